@@ -73,9 +73,9 @@ public:
   // Feet on one line are level when the foot changes, so slip rate and force are continuous; only the acceleration of the slip jumps, by the
   // distance of the feet times the square of the angular velocity. The integration is restarted there, but no event is listed.
   [[nodiscard]] EventKind contact_switch_event(const FrictionState&, const FrictionState&) const override {
-    constexpr double k_rounding = 1e-12; // share of the distance from the centre; of coordinates in the file
+    constexpr double k_level_feet = 1e-12; // share of the distance from the centre; of coordinates in the file
     const double height = feet[1].direction.dot(feet[1].point_b - feet[0].point_b);
-    return has_two_feet && std::abs(height) <= k_rounding * lever ? EventKind::none : EventKind::changes_foot;
+    return has_two_feet && std::abs(height) <= k_level_feet * lever ? EventKind::none : EventKind::changes_foot;
   }
   // Contact dampers convert velocity errors to normal force errors, and friction with μ > 1 amplifies them. Velocities must then be
   // accurate enough for the resulting acceleration to be small compared with k_floor_acceleration. Otherwise the contact chatters: errors

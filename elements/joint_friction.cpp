@@ -65,10 +65,10 @@ double time_of_least(const Signal& signal, double end) {
 // Reports a signal that becomes negative. Negative pressure has no meaning, and the kink where a clipped pressure becomes zero would not be
 // located as an event.
 bool is_pressure(const JointFriction& e, const Signal* signal, SystemBuilder& builder) {
-  constexpr double k_rounding = 1e-12;
+  constexpr double k_rounded_zero = 1e-12; // a factor that touches zero may be rounded to this far below it
   if (!signal) return true;
   const double t = time_of_least(*signal, builder.model().simulation.end), least = signal->value(t);
-  if (least >= -k_rounding) return true;
+  if (least >= -k_rounded_zero) return true;
   builder.error("'signal': '" + e.signal + "' falls to " + rounded_text(least) + " at t = " + rounded_text(t) +
                 " s, and what presses is never below zero: add an offset, or make it of pulses");
   return false;
@@ -175,7 +175,7 @@ void compile_joint_friction(const Element& element, SystemBuilder& builder) {
   row.point_b = b.point;
   row.quantity = e.coordinate == "angle" ? "angle" : "slide";
   row.element = builder.element_index();
-  row.memory = builder.add_memory();
+  row.base = builder.add_base();
   if (e.coordinate == "angle") row.kind = MeasureKind::angle;
   else if (e.coordinate == "distance") row.kind = MeasureKind::distance;
   else row.direction = builder.direction(b, e.coordinate == "x" ? Vec2(1.0, 0.0) : Vec2(0.0, 1.0));

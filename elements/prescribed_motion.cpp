@@ -39,8 +39,8 @@ std::string jump_message(const PrescribedMotion& e, const Signal::Jump& jump) {
 
 // Returns true if the difference is more than rounding of a pose given with few digits.
 bool jumps(double now, double wanted) {
-  constexpr double k_rough = 1e-3, k_rounding = 1e-9; // relative to the coordinate; m, rad
-  return std::abs(wanted - now) > std::max(k_rounding, k_rough * std::max(std::abs(now), std::abs(wanted)));
+  constexpr double k_rough = 1e-3, k_least_jump = 1e-9; // relative to the coordinate; m, rad
+  return std::abs(wanted - now) > std::max(k_least_jump, k_rough * std::max(std::abs(now), std::abs(wanted)));
 }
 
 std::string start_message(const PrescribedMotion& e, const RowSpec& row, double now, double wanted) {
@@ -75,7 +75,7 @@ void compile_prescribed(const Element& element, SystemBuilder& builder) {
   const double base = e.zero == "reference" ? now : 0.0;
   if (row.level == DriveLevel::position) // also for a position relative to the reference pose: a start would move the body without notice
     if (const double wanted = base + row.drive->value(0.0); jumps(now, wanted)) return builder.error(start_message(e, row, now, wanted));
-  row.memory = builder.add_memory(base);
+  row.base = builder.add_base(base);
   const int r = builder.next_row();
   builder.add_channel("reaction", row.kind == MeasureKind::angle ? "N m" : "N",
                       {"force or couple on a that the motion takes", "positive: towards larger values of the coordinate"},

@@ -11,8 +11,8 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_rounding = 1e-9; // relative; the last step may end short of the end of the run
-constexpr double k_beyond = 1e-3;   // relative to the length of the outline along the face; feet may stand on an edge
+constexpr double k_at_end = 1e-9; // relative; the last step may end short of the end of the run
+constexpr double k_beyond = 1e-3; // relative to the length of the outline along the face; feet may stand on an edge
 
 // Returns the finding, for a contact that pressed `beyond` metres beyond the end of its part; nothing if that is not noticeable.
 std::optional<Finding> beyond_edge(const LoadedModel& loaded, const EndlessFace& face, double beyond, const std::string& when) {
@@ -67,7 +67,7 @@ std::vector<Finding> contacts_beyond_edges(const LoadedModel& loaded, const RunR
   }
   std::vector<Finding> found;
   for (const auto& [element, travel] : farthest) {
-    const bool is_at_end = travel->t >= result.final_state.t * (1.0 - k_rounding);
+    const bool is_at_end = travel->t >= result.final_state.t * (1.0 - k_at_end);
     if (auto finding =
             beyond_edge(loaded, travel->face, travel->beyond, is_at_end ? "at the end" : "at t = " + time_text(travel->t) + " s"))
       found.push_back(std::move(*finding));

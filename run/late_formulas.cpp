@@ -18,12 +18,12 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_samples = 200;      // samples within the run; as many shortly after its end, and in a geometric sequence further on
-constexpr double k_near = 10.0;     // run lengths over which the first samples after the end are evenly spaced
-constexpr double k_larger = 1.25;   // relative to the run; peaks of sums of harmonics differ by less between intervals
-constexpr double k_far = 100.0;     // run lengths within which a load reaches its full size, if it has one
-constexpr double k_behind = 1e4;    // run lengths up to the last sample
-constexpr double k_rounding = 1e-9; // relative to the largest value; smaller differences are rounding
+constexpr int k_samples = 200;    // samples within the run; as many shortly after its end, and in a geometric sequence further on
+constexpr double k_near = 10.0;   // run lengths over which the first samples after the end are evenly spaced
+constexpr double k_larger = 1.25; // relative to the run; peaks of sums of harmonics differ by less between intervals
+constexpr double k_far = 100.0;   // run lengths within which a load reaches its full size, if it has one
+constexpr double k_behind = 1e4;  // run lengths up to the last sample
+constexpr double k_alike = 1e-9;  // relative to the largest value; smaller differences are rounding
 
 bool uses_time(const ElementEntry& entry) {
   if (as_action(*entry.element)) return false;
@@ -83,7 +83,7 @@ private:
 
 bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
   for (std::size_t i = 0; i < a.size(); ++i)
-    if (std::abs(a[i] - b[i]) > k_rounding * std::max(std::abs(a[i]), std::abs(b[i]))) return false;
+    if (std::abs(a[i] - b[i]) > k_alike * std::max(std::abs(a[i]), std::abs(b[i]))) return false;
   return true;
 }
 

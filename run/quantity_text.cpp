@@ -9,8 +9,6 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_rounding = 1e-9;
-
 std::string formatted(const char* format, double value) {
   char buffer[64];
   std::snprintf(buffer, sizeof buffer, format, value);
@@ -45,7 +43,7 @@ std::string quantity_text(double value, const std::string& unit) {
 }
 
 std::string quantity_text(double value, const std::string& unit, double scale) {
-  return quantity_text(std::abs(value) < k_rounding * std::abs(scale) ? 0.0 : value, unit);
+  return quantity_text(std::abs(value) < k_shown_as_zero * std::abs(scale) ? 0.0 : value, unit);
 }
 
 std::string time_text(double t) { return formatted("%.6f", t); }

@@ -18,7 +18,9 @@ struct UnitPrefix {
 
 /// Returns six digits with a suitable prefix: 259822.17 N -> "259.822 kN", 7.9e-4 m -> "0.79 mm".
 [[nodiscard]] std::string quantity_text(double value, const std::string& unit);
-/// As above, but a value below 1e-9 `scale` is regarded as rounding and shown as zero.
+/// Relative to the scale of its kind: a smaller value is rounding, shown as zero.
+inline constexpr double k_shown_as_zero = 1e-9;
+/// As above, but a value below k_shown_as_zero `scale` is shown as zero.
 [[nodiscard]] std::string quantity_text(double value, const std::string& unit, double scale);
 /// Returns a time with microseconds: "0.085143".
 [[nodiscard]] std::string time_text(double t);

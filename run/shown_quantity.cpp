@@ -2,6 +2,7 @@
 
 #include "run/decimal_digits.h"
 #include "run/measured_text.h"
+#include "run/quantity_text.h"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +12,6 @@
 namespace steplap {
 
 namespace {
-
-constexpr double k_rounding = 1e-9; // relative to the scale; smaller values are rounding
 
 // Returns "m/s²" for "m/s^2".
 std::string shown_unit(std::string unit) {
@@ -29,7 +28,7 @@ bool is_scaled(std::string_view unit) {
   return std::find(k_units.begin(), k_units.end(), unit) != k_units.end();
 }
 
-bool is_rounding(double value, const ShownContext& context) { return std::abs(value) < k_rounding * std::abs(context.scale); }
+bool is_rounding(double value, const ShownContext& context) { return std::abs(value) < k_shown_as_zero * std::abs(context.scale); }
 
 } // namespace
 

@@ -14,8 +14,9 @@ namespace steplap {
 namespace {
 
 constexpr double k_turn = 2.0 * std::numbers::pi;
-constexpr double k_turn_digits = 1e-9; // rad: digits of a file
-constexpr double k_rounding = 1e-12;   // of a lift, of an angle
+constexpr double k_turn_digits = 1e-9;             // rad: digits of a file
+constexpr double k_rounded_angle = 1e-12 * k_turn; // rad: by which an angle of the curve may be rounded
+constexpr double k_same_lift = 1e-12;              // relative difference of lifts a turn apart
 
 // Computes h'' at the points from the continuity of h' at each. For a periodic curve the last point is the first one.
 std::vector<double> curvatures(const std::vector<Vec2>& p, bool is_periodic) {
@@ -80,7 +81,7 @@ private:
     c[0] = 0.5 * (begin + end);
     c[1] = 0.5 * (end - begin);
     using Angle = Enclosure<k_enclosure_degree>;
-    const std::vector<Angle> operands(operands_, Angle::of_polynomial(c, k_rounding * k_turn));
+    const std::vector<Angle> operands(operands_, Angle::of_polynomial(c, k_rounded_angle));
     return evaluate<EnclosingNumbers<k_enclosure_degree>>(tree_, operands.data(), Angle::of_number(0.0), enclosures_.data()).range;
   }
   void halve(double begin, double end, int depth) {
@@ -113,7 +114,7 @@ LiftCurve::LiftCurve(std::vector<Vec2> points)
     : points_(std::move(points)), curvature_(curvatures(points_, is_whole_turn(points_))), is_periodic_(is_whole_turn(points_)) {}
 
 LiftCurve::LiftCurve(FormulaProgram formula, const FormulaTree& tree) : formula_(std::move(formula)) {
-  const bool is_repeated = std::abs(of_formula(k_turn).value - of_formula(0.0).value) <= k_rounding * std::abs(of_formula(0.0).value);
+  const bool is_repeated = std::abs(of_formula(k_turn).value - of_formula(0.0).value) <= k_same_lift * std::abs(of_formula(0.0).value);
   if (is_repeated) formula_knots_ = LobeSearch(tree).knots();
 }
 

@@ -19,7 +19,7 @@ constexpr double k_tail = 4.0;
 // E′/E. At the nodes T_j coincides with T_{12−j}, so the error contributed by T_j is T_j − T_{12−j}. Its slope on [−1, 1] is at most j² −
 // (12 − j)²: 24 and 48 for j = 7 and 8. On [0, 1] it is twice that, for a coefficient that E counts at least twice.
 constexpr double k_tail_slope = 48.0;
-constexpr double k_rounding = 1e-15; // relative to the largest value: smaller coefficients are rounding errors
+constexpr double k_least_coefficient = 1e-15; // relative to the largest value: smaller coefficients are rounding errors
 // Largest number of bisections of a gap. Each one reduces the distance between Bernstein coefficients and polynomial by four, so at this
 // depth it is 1e-12 of the curvature term. If the sign is still open then, the caller divides the interval.
 constexpr int k_depth = 20;
@@ -158,7 +158,7 @@ void PartPolynomial::fit(const Values& values) {
     for (std::size_t j = 0; j <= k_order; ++j) chebyshev_[j] += k_table.transform[j][k] * values[k];
   }
   error_ = k_tail * (std::abs(chebyshev_[k_order]) + std::abs(chebyshev_[k_order - 1]));
-  if (error_ < k_rounding * largest_) error_ = 0.0;
+  if (error_ < k_least_coefficient * largest_) error_ = 0.0;
   Values rest{};
   for (std::size_t j = 0; j <= k_order; ++j)
     for (std::size_t i = 0; i <= k_order; ++i) rest[i] += chebyshev_[j] * k_table.bernstein[j][i];

@@ -11,9 +11,9 @@ namespace steplap {
 namespace {
 
 // Rows of A, scaled to a diagonal of 1, count as dependent if their part independent of the other rows is smaller.
-constexpr double k_dependent = 1e-12; // squared length, as in SchurSolver::k_dependent
-constexpr double k_rounding = 1e-13;  // relative to the terms of g_i
-constexpr int k_most_steps = 2;       // steps to the minimum for one set of free variables; what remains afterwards is rounding
+constexpr double k_dependent = 1e-12;        // squared length, as in SchurSolver::k_dependent
+constexpr double k_rounded_gradient = 1e-13; // relative to the terms of g_i
+constexpr int k_most_steps = 2;              // steps to the minimum for one set of free variables; what remains afterwards is rounding
 
 class ActiveSet {
 public:
@@ -36,7 +36,7 @@ public:
 private:
   [[nodiscard]] VecX gradient() const { return a_ * w_ + b_; }
   [[nodiscard]] double tolerance(Eigen::Index i) const {
-    return rounding_[i] + k_rounding * (a_.row(i).cwiseAbs().dot(w_.cwiseAbs()) + std::abs(b_[i]));
+    return rounding_[i] + k_rounded_gradient * (a_.row(i).cwiseAbs().dot(w_.cwiseAbs()) + std::abs(b_[i]));
   }
   // Returns true if g_i exceeds its rounding.
   [[nodiscard]] bool pulls(Eigen::Index i, double g) const { return std::abs(g) > tolerance(i); }

@@ -23,6 +23,8 @@ constexpr double k_turned_share = 1e-4;
 constexpr double k_rigid_joint_interval = 0.25, k_merged_end = 0.0625;
 // Relative to time: a step that cannot satisfy the constraints is not shortened below this.
 constexpr double k_shortest_try = 1e-12;
+// Accuracy of positions and velocities that rounding leaves: relative, and in m, rad, m/s, rad/s.
+constexpr double k_finest_accuracy = 1e-12;
 // Errors of slip velocities stay below this fraction of the slip speed, whatever the tolerance. At the start and end of a slip, |ν| → 0, an
 // error of the size of the tolerance would give the friction an arbitrary direction.
 constexpr double k_slip_share = 5e-4;
@@ -109,21 +111,19 @@ void Integrator::note_divided(double h) {
 }
 
 double Integrator::rate_accuracy(const Dynamics& dynamics) const {
-  constexpr double k_rounding = 1e-12;
   const int m = dynamics.coordinate_count();
   double fastest = 0.0;
   for (int i = 0; i < m; ++i) fastest = std::max(fastest, std::abs(y1_[m + i]));
-  const double tolerance = is_adaptive() ? std::max(settings_.tolerance, k_rounding) : k_rounding;
-  return tolerance * (rate_floor_ * k_displacement_floor * length_scale_ + fastest) + k_rounding;
+  const double tolerance = is_adaptive() ? std::max(settings_.tolerance, k_finest_accuracy) : k_finest_accuracy;
+  return tolerance * (rate_floor_ * k_displacement_floor * length_scale_ + fastest) + k_finest_accuracy;
 }
 
 double Integrator::place_accuracy(const Dynamics& dynamics) const {
-  constexpr double k_rounding = 1e-12;
   const Layout& layout = dynamics.layout();
   double farthest = 0.0;
   for (int i = 0; i < dynamics.coordinate_count(); ++i) farthest = std::max(farthest, std::abs(y1_[i] - layout.reference[i]));
-  const double tolerance = is_adaptive() ? std::max(settings_.tolerance, k_rounding) : k_rounding;
-  return tolerance * (k_displacement_floor * length_scale_ + farthest) + k_rounding;
+  const double tolerance = is_adaptive() ? std::max(settings_.tolerance, k_finest_accuracy) : k_finest_accuracy;
+  return tolerance * (k_displacement_floor * length_scale_ + farthest) + k_finest_accuracy;
 }
 
 bool Integrator::end_at(Dynamics&, double) { return false; }

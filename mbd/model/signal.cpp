@@ -406,12 +406,12 @@ bool Signal::is_constant() const {
 
 namespace {
 
-constexpr double k_rounding = 1e-12;
+constexpr double k_least_jump = 1e-12; // relative to the terms of both sides: a smaller difference is rounding, not a jump
 
 // Values on both sides of a breakpoint, and a bound of their rounding error.
 struct Sides {
   double before = 0.0, after = 0.0, scale = 0.0;
-  [[nodiscard]] bool differ() const { return std::abs(after - before) > k_rounding * scale; }
+  [[nodiscard]] bool differ() const { return std::abs(after - before) > k_least_jump * scale; }
 };
 
 // Returns a bound of the terms of f′ on a piece up to τ.
@@ -437,7 +437,7 @@ Sides values_at(const std::vector<Signal::Piece>& pieces, std::size_t k) {
   const Signal::Piece& left = pieces[k - 1];
   const double length = right.start - left.start;
   sides.before = evaluate(left, length).value;
-  sides.scale = std::max(sides.scale, magnitude(left, length)) + time_rounding(left, right.start, length) / k_rounding;
+  sides.scale = std::max(sides.scale, magnitude(left, length)) + time_rounding(left, right.start, length) / k_least_jump;
   return sides;
 }
 
@@ -450,12 +450,12 @@ double slope_rounding(const Signal::Piece& piece, double length) {
 Sides rates_at(const std::vector<Signal::Piece>& pieces, std::size_t k) {
   const Signal::Piece& right = pieces.at(k);
   Sides sides{0.0, evaluate(right, 0.0).rate, rate_magnitude(right, 0.0)};
-  if (k + 1 < pieces.size()) sides.scale += slope_rounding(right, pieces[k + 1].start - right.start) / k_rounding;
+  if (k + 1 < pieces.size()) sides.scale += slope_rounding(right, pieces[k + 1].start - right.start) / k_least_jump;
   if (k == 0) return sides;
   const Signal::Piece& left = pieces[k - 1];
   const double length = right.start - left.start;
   sides.before = evaluate(left, length).rate;
-  sides.scale = std::max(sides.scale, rate_magnitude(left, length) + slope_rounding(left, length) / k_rounding);
+  sides.scale = std::max(sides.scale, rate_magnitude(left, length) + slope_rounding(left, length) / k_least_jump);
   return sides;
 }
 

@@ -153,13 +153,13 @@ struct Trapezoid : SignalDefinition {
 std::array<double, 4> corners_of(const Trapezoid& p) {
   const double rise_end = p.start + p.rise;
   if (p.hold) return {p.start, rise_end, rise_end + *p.hold, rise_end + *p.hold + p.fall};
-  constexpr double k_rounding = 1e-12;
+  constexpr double k_same_duration = 1e-12; // relative: sums of times given as decimals differ by less
   const double excess = p.rise + p.fall - *p.duration, end = p.start + *p.duration;
-  if (excess > k_rounding * *p.duration)
+  if (excess > k_same_duration * *p.duration)
     throw ModelError(p.where, "trapezoid '" + p.name +
                                   "' rises and falls longer than it lasts: "
                                   "'rise' + 'fall' must not exceed 'duration'");
-  return {p.start, rise_end, excess > -k_rounding * *p.duration ? rise_end : end - p.fall, end};
+  return {p.start, rise_end, excess > -k_same_duration * *p.duration ? rise_end : end - p.fall, end};
 }
 
 Signal build_trapezoid(const SignalDefinition& definition) {

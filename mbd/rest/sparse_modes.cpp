@@ -23,7 +23,7 @@ constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 constexpr double k_new = 1e-9;              // share of a vector's length: least part outside the basis for a new direction
 constexpr double k_residual = 1e-9;         // largest residual, relative to the mode's own acceleration
 constexpr double k_out_of_balance = 1e-4;   // the same if W is the whole space of the model and cannot grow any more
-constexpr double k_rounding = 32.0;         // epsilons of the terms in a residual
+constexpr double k_rounded_terms = 32.0;    // epsilons of the terms in a residual
 constexpr double k_same = 1e-6;             // relative difference of squared frequencies that count as equal
 constexpr double k_well_below = 1.0 / 64.0; // ratio of σ² to the square of the first frequency
 constexpr int k_starts = 3;                 // starting vectors, in addition to one for each rigid motion
@@ -224,7 +224,7 @@ private:
     mode.residual = length(size(left)) / own;
     const VecX terms = SparseVibration::Sparse(scene_.stiffness().cwiseAbs()) * size(mode.q) +
                        rate * (SparseVibration::Sparse(scene_.damping().cwiseAbs()) * size(mode.q)) + rate * rate * size(mq);
-    const double rounding = k_rounding * k_epsilon * length(terms.cwiseQuotient(scene_.mass())) / own;
+    const double rounding = k_rounded_terms * k_epsilon * length(terms.cwiseQuotient(scene_.mass())) / own;
     return mode.residual <= std::max(k_residual, rounding);
   }
 

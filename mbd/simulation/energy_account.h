@@ -33,7 +33,7 @@ public:
   /// Returns the largest energy error of a step relative to its bound (step_bound); 0 without a tolerance.
   [[nodiscard]] double worst_step() const { return worst_step_; }
   /// Returns the rounding error of the energies, J.
-  [[nodiscard]] double rounding() const { return k_rounding * largest_; }
+  [[nodiscard]] double rounding() const { return k_rounded_energy * largest_; }
 
   /// Residual relative to scale() above which a run cannot be trusted.
   static constexpr double k_untrusted = 1e-2;
@@ -47,7 +47,7 @@ public:
   static const double k_reserve;
 
 private:
-  static constexpr double k_rounding = 1e-11;
+  static constexpr double k_rounded_energy = 1e-11; ///< relative to the largest energy
   [[nodiscard]] double turned_over() const { return std::max(exchanged_, peak_kinetic_); }
   void judge_step(const Dynamics& dynamics, double t, double made, double given_back);
 

@@ -24,11 +24,11 @@ double tolerance_of_number(const ChannelRange& channel, double resolution, doubl
 
 // Returns the accuracy to which the extremes of a channel are located.
 double ExtremeFinder::tolerance(std::size_t c) const {
-  if (ranges_[c].channel->unit.empty()) return tolerance_of_number(ranges_[c], k_resolution, k_rounding);
+  if (ranges_[c].channel->unit.empty()) return tolerance_of_number(ranges_[c], k_resolution, k_rounded_range);
   const Kind& kind = kinds_[kind_[c]];
   const double range = ranges_[c].high.value - ranges_[c].low.value;
   const double wanted =
-      k_resolution * (std::isfinite(range) ? range : 0.0) + k_noise * kind.range + k_rounding * std::max(kind.largest, kind.scale);
+      k_resolution * (std::isfinite(range) ? range : 0.0) + k_noise * kind.range + k_rounded_range * std::max(kind.largest, kind.scale);
   return jitter_.empty() ? wanted : std::max(wanted, jitter_[c]);
 }
 

@@ -54,6 +54,9 @@ struct ChannelRange {
   [[nodiscard]] const Extreme& largest() const;
 };
 
+/// Relative to the largest value of channels with the same unit: a smaller range shows only rounding.
+inline constexpr double k_rounded_range = 1e-12;
+
 /// Computes the ranges of all channels during one run. Used by Simulation.
 class ExtremeFinder {
 public:
@@ -83,10 +86,9 @@ public:
   static constexpr double k_at_pole = 1e9;     ///< a channel without unit beyond this value counts as a pole
 
 private:
-  static constexpr int k_nodes = 9;           ///< largest number of nodes inside a stretch
-  static constexpr int k_longest = 16;        ///< largest number of fixed steps in a stretch
-  static constexpr double k_noise = 1e-9;     ///< relative to the largest range of channels with the same unit
-  static constexpr double k_rounding = 1e-12; ///< relative to the largest value of channels with the same unit
+  static constexpr int k_nodes = 9;       ///< largest number of nodes inside a stretch
+  static constexpr int k_longest = 16;    ///< largest number of fixed steps in a stretch
+  static constexpr double k_noise = 1e-9; ///< relative to the largest range of channels with the same unit
   class Site;
   /// Smallest pivot of the constraints, the square of a distance in rad²: a state nearer than 0.01 mrad to a singular position is at it.
   static constexpr double k_singular_pivot = 1e-10;

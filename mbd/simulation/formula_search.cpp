@@ -20,7 +20,7 @@ constexpr double k_beyond = 3.0;
 constexpr double k_found_by_events = 1e-2, k_behind_change = 2.0;
 constexpr double k_smooth = 0.5;      // largest deviation of the middle from a cubic, relative to its distance from the range of the ends
 constexpr double k_least_peak = 1e-3; // relative to the range of the formula over the step: smaller peaks are ignored
-constexpr double k_rounding = 1e-9;   // relative to the values
+constexpr double k_beyond_values = 1e-9; // relative to the values
 
 double value_of(const MotionOperand& operand, const FormulaInMotion& in_motion, const Snapshot& s) {
   switch (operand.kind) {
@@ -151,7 +151,7 @@ bool FormulaSearch::set_band(MonitoredFormula& sought, Integrator& integrator, D
     is_shown = std::abs(middle - cubic) <= k_smooth * beyond_ends;
   }
   if (is_shown) low = std::min(low, middle), high = std::max(high, middle);
-  const double beyond = k_beyond * (high - low) + k_rounding * std::max(std::abs(low), std::abs(high));
+  const double beyond = k_beyond * (high - low) + k_beyond_values * std::max(std::abs(low), std::abs(high));
   sought.low = low - beyond;
   sought.high = high + beyond;
   return true;

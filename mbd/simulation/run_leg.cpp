@@ -48,7 +48,7 @@ RunLeg::RunLeg(const System& system, const State& initial, SimulationOptions opt
   handler_.start(state_);
   handler_.note_start(state_, record_->events);
   keep_blows();
-  project_and_set_up(nullptr, system_.initial_memory);
+  project_and_set_up(nullptr, system_.initial_impacts);
   if (options_.output_step > 0.0) {
     record_->samples = static_cast<long>(std::floor(state_.t / options_.output_step + k_output_slack)); // none are due before the start
     record_sample(state_.t);
@@ -56,7 +56,7 @@ RunLeg::RunLeg(const System& system, const State& initial, SimulationOptions opt
 }
 
 // Precondition: the constraints are satisfied to rounding, or to the digits of the file.
-void RunLeg::project_and_set_up(const PowerLedger* before, const std::vector<double>& unhurt) {
+void RunLeg::project_and_set_up(const PowerLedger* before, const std::vector<Impact>& impacts) {
   dynamics_.set_state(state_);
   dynamics_.pack(state_, y_.data());
   dynamics_.project(state_.t, y_.data(), options_.settings.projection_tolerance);
@@ -70,7 +70,7 @@ void RunLeg::project_and_set_up(const PowerLedger* before, const std::vector<dou
   }
   if (options_.has_extremes) extremes_ = std::make_unique<ExtremeFinder>(system_, system_.largest_dimension());
   if (!system_.integrands.empty()) {
-    ledger_ = std::make_unique<PowerLedger>(system_, system_.largest_dimension(), unhurt);
+    ledger_ = std::make_unique<PowerLedger>(system_, system_.largest_dimension(), impacts);
     if (before) ledger_->go_on_from(*before);
     dynamics_.set_snapshot_integrals(ledger_.get());
   }
@@ -176,7 +176,7 @@ void RunLeg::fail_infinite(double t) const {
 // group that shares a load the event function is that of the group.
 void RunLeg::check_holding(double t, const std::vector<double>& event_value) const {
   for (const int f : joints_) {
-    const double left = event_value[system_.frictions[f].first_event];
+    const double left = event_value[system_.frictions[f].slot(FrictionWatch::first)];
     if (left >= -k_held_beyond || state_.friction[f].phase != FrictionPhase::stick) continue;
     throw ElementFailure("at t = " + number_text(t) + " s '" + system_.element_names[system_.frictions[f].element] +
                              "' holds with a margin of " + rounded_text(1.0 / (1.0 - left), 12) +
@@ -305,10 +305,11 @@ std::vector<int> RunLeg::slots_of_other(double t, const std::vector<int>& fired)
   for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
     const FrictionUnit& unit = system_.frictions[f];
     const std::string& name = system_.element_names[unit.element];
-    if (name == tie.slips) std::erase_if(slots, [&](int slot) { return slot == unit.first_event || slot == unit.first_event + 1; });
+    const int first = unit.slot(FrictionWatch::first), second = unit.slot(FrictionWatch::second);
+    if (name == tie.slips) std::erase_if(slots, [&](int slot) { return slot == first || slot == second; });
     if (name != tie.sticks) continue;
     const std::vector<double>& event_value = dynamics_.event_value();
-    slots.push_back(event_value[unit.first_event] <= event_value[unit.first_event + 1] ? unit.first_event : unit.first_event + 1);
+    slots.push_back(event_value[first] <= event_value[second] ? first : second);
   }
   return slots;
 }
@@ -498,11 +499,11 @@ void RunLeg::finish_extremes() {
 // Reports a part of a load that a time step has averaged: bodies get its impulse, but no force or acceleration shows it.
 void RunLeg::note_passed(double t0, double t1) {
   if (statistics_.passed_pulse) return;
-  constexpr double k_rounding = 64.0 * std::numeric_limits<double>::epsilon(); // tolerance for times that were meant to be equal
+  constexpr double k_same_time = 64.0 * std::numeric_limits<double>::epsilon(); // tolerance for times that were meant to be equal
   const std::vector<double>& times = system_.breakpoints;
   for (auto next = std::lower_bound(times.begin(), times.end(), t0); next != times.end() && next + 1 != times.end() && *(next + 1) < t1;
        ++next)
-    if (*(next + 1) - *next > k_rounding * *(next + 1)) statistics_.passed_pulse = *next;
+    if (*(next + 1) - *next > k_same_time * *(next + 1)) statistics_.passed_pulse = *next;
 }
 
 // Takes over the modes from a method that determines them itself, and reports the changes.

@@ -20,9 +20,9 @@ constexpr double k_finer_tolerance = 0.01;
 constexpr double k_least_tolerance = 1e-14; // smaller tolerances are dominated by rounding
 constexpr int k_division = 2;
 constexpr double k_finer_step = 1.0 / k_division;
-constexpr double k_finer_cost = 3.0;  // cost of a hundredth of the tolerance; a method of order 5 takes 2.5 times the steps
-constexpr double k_rounding = 1e-14;  // share of a channel's largest value, and of times
-constexpr double k_first_order = 0.5; // share of the error left by half the step
+constexpr double k_finer_cost = 3.0;    // cost of a hundredth of the tolerance; a method of order 5 takes 2.5 times the steps
+constexpr double k_least_error = 1e-14; // share of a channel's largest value, and of times
+constexpr double k_first_order = 0.5;   // share of the error left by half the step
 constexpr double k_safety = 1.5;
 // Share of the error left by a finer run; beyond it the difference is less than a tenth of the error, and the estimate is useless.
 constexpr double k_most_left = 0.9;
@@ -221,7 +221,7 @@ void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate&
   const bool has_located_events = locates_events(options);
   const double tolerance = is_adaptive(system, options.integrator) ? settings.tolerance : settings.projection_tolerance;
   const double end = run.final_state.t;
-  const double time = (tolerance + k_rounding) * end + (has_located_events ? 0.0 : settings.step);
+  const double time = (tolerance + k_least_error) * end + (has_located_events ? 0.0 : settings.step);
   std::map<std::string, Kind> kinds = kinds_of(run.ranges, estimate.channels);
   set_scales(system, run, kinds);
   for (std::size_t c = 0; c < run.ranges.size(); ++c) {
@@ -229,7 +229,7 @@ void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate&
     const Kind& kind = kinds[range.channel->unit];
     if (is_located(range, kind) && is_exact(range, estimate.finest.ranges[c])) continue;
     ChannelError& error = estimate.channels[c];
-    const double floor = tolerance * kind.range + k_rounding * std::max(kind.largest, kind.scale);
+    const double floor = tolerance * kind.range + k_least_error * std::max(kind.largest, kind.scale);
     const double spread = spread_of(range);
     // Time stepping: the position of impacts within a step is random, so a single extreme may agree by chance. The median error of its unit
     // is the least estimate.
@@ -248,8 +248,8 @@ void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate&
   for (std::size_t i = 0; i < run.events.size(); ++i)
     if (!run.events[i].is_at_start()) estimate.event_times[i] += time + run.events[i].located_within;
   const RunStatistics& s = run.statistics;
-  if (s.dissipated != 0.0) estimate.dissipated += tolerance * s.energy_scale + k_rounding * std::abs(s.dissipated);
-  if (s.work != 0.0) estimate.work += tolerance * s.energy_scale + k_rounding * std::abs(s.work);
+  if (s.dissipated != 0.0) estimate.dissipated += tolerance * s.energy_scale + k_least_error * std::abs(s.dissipated);
+  if (s.work != 0.0) estimate.work += tolerance * s.energy_scale + k_least_error * std::abs(s.work);
 }
 
 // Sets all errors to unknown, because no finer run exists. Constants and events at t = 0 stay known.

@@ -17,8 +17,6 @@ constexpr double k_is_constant = 1e-9; // share of the value; a smaller range is
 // Share of the bodies' size L, m: smaller motions count as none. Errors of positions are absolute to 1e-3 L (Integrator); hundreds of steps
 // at the usual tolerance leave 1e-9 L, a tenth of k_no_motion.
 constexpr double k_no_motion = 1e-8;
-// Share of the largest value of its kind, as in mbd/simulation/extremes.h: a channel with a smaller range shows only rounding.
-constexpr double k_rounding = 1e-12;
 
 struct Compared {
   const Channel* channel = nullptr;
@@ -148,11 +146,12 @@ std::vector<std::pair<const Compared*, WorstError>> worst_of_channels(const std:
                                                                       const RowPairs& rows, const BetweenEvents& between) {
   const Scales scales = scales_of(channels), sizes = sizes_of(channels);
   std::vector<std::pair<const Compared*, WorstError>> list;
-  std::vector<double> scale, rounding; // rounding: largest value of its kind times k_rounding, for channels whose range is less; else 0
+  std::vector<double> scale,
+      rounding; // rounding: largest value of its kind times k_rounded_range, for channels whose range is less; else 0
   for (const Compared& c : channels) {
     list.push_back({&c, {}});
     scale.push_back(scale_of(c, scales, size));
-    const double least = k_rounding * sizes.at(c.kind) / c.arm;
+    const double least = k_rounded_range * sizes.at(c.kind) / c.arm;
     rounding.push_back(c.range() <= least ? least : 0.0);
   }
   for (std::size_t row = 0; row < rows.size(); ++row) {

@@ -1,4 +1,4 @@
-#include "tools/steplap/cases.h"
+#include "tools/steplap/commands.h"
 
 #include "run/findings.h"
 #include "run/load_cases.h"

@@ -20,7 +20,7 @@ using Align = TextTable::Align;
 using Json = OrderedJson;
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_rounding = 1e-9;     // of the larger value; used if there are no error estimates, because runs with other steps agree to
+constexpr double k_same_value = 1e-9;   // of the larger value; used if there are no error estimates, because runs with other steps agree to
                                         // this accuracy
 constexpr std::size_t k_most_rows = 20; // of events, and of extremes, on the screen
 constexpr double k_least_share = 0.005; // smaller changes of a share round to 0 % of the limit
@@ -53,7 +53,7 @@ Measured measured_in(const Json& json, const std::string& key, const std::string
 // Returns true if the values differ by more than their errors. Values with unknown errors never differ.
 bool differ(const Measured& a, const Measured& b) {
   if (std::isnan(a.value) || std::isnan(b.value)) return std::isnan(a.value) != std::isnan(b.value);
-  const double difference = std::abs(a.value - b.value), rounding = k_rounding * std::max(std::abs(a.value), std::abs(b.value));
+  const double difference = std::abs(a.value - b.value), rounding = k_same_value * std::max(std::abs(a.value), std::abs(b.value));
   return difference > std::max(rounding, a.error.value_or(0.0) + b.error.value_or(0.0)); // false for NaN
 }
 
@@ -70,7 +70,7 @@ std::pair<Cell, Cell> cells_of(const Measured& a, const Measured& b, const std::
 
 // Returns an empty cell if the value before was zero within its error.
 Cell change_of(const Measured& a, const Measured& b) {
-  if (std::isnan(a.value) || std::isnan(b.value) || std::abs(a.value) <= std::max(k_rounding * std::abs(b.value), a.error.value_or(0.0)))
+  if (std::isnan(a.value) || std::isnan(b.value) || std::abs(a.value) <= std::max(k_same_value * std::abs(b.value), a.error.value_or(0.0)))
     return "";
   return change_cell(a.value, b.value);
 }
@@ -246,7 +246,7 @@ std::size_t print_extremes(std::ostream& out, const Json& a, const Json& b) {
     for (const char* which : {"min", "max"}) {
       const std::string error = std::string("error_") + which;
       const Measured first = measured_in(before, which, error), second = measured_in(after, which, error);
-      if (!differ(first, second) || std::abs(first.value - second.value) <= k_rounding * scale) continue;
+      if (!differ(first, second) || std::abs(first.value - second.value) <= k_same_value * scale) continue;
       const auto [value_before, value_after] = cells_of(first, second, text_in(before, "unit"));
       rows.push_back({std::abs(first.value - second.value) / scale,
                       {channel, std::string(which) == "min" ? "lowest" : "highest", value_before, value_after, change_of(first, second)}});

@@ -4,6 +4,7 @@
 #include "run/catalogue.h"
 #include "run/findings.h"
 #include "run/run.h"
+#include "tools/steplap/commands.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/output_files.h"
 

@@ -3,6 +3,7 @@
 #include "mbd/io/atomic_file.h"
 #include "tools/pages/assessment_page.h"
 #include "tools/pages/report_page.h"
+#include "tools/steplap/commands.h"
 #include "tools/steplap/output_files.h"
 
 #include <algorithm>

@@ -26,7 +26,7 @@ using Align = TextTable::Align;
 constexpr int k_most_directions = 3600;
 constexpr double k_most_acceleration = 1e4; // m/s²
 constexpr double k_unloaded = 1e6;          // margin above which the load is only rounding
-constexpr double k_rounding = 1e-9;         // fraction of the permitted reaction
+constexpr double k_least_share = 1e-9;      // fraction of the permitted reaction
 constexpr std::size_t k_most_feet = 2;      // number of names in a row
 
 double number_of(const std::string& text, const std::string& option, double low, double high) {
@@ -82,7 +82,7 @@ std::string reaction_text(const StaticCase& one) {
   const auto share = [](const StaticReaction& r) { return std::abs(r.value) / *r.allowed; };
   for (const StaticReaction& reaction : one.reactions)
     if (reaction.allowed && *reaction.allowed > 0.0 && (!nearest || share(reaction) > share(*nearest))) nearest = &reaction;
-  return nearest && share(*nearest) > k_rounding ? rounded_text(100.0 * share(*nearest), 3) + " % " + nearest->name : "-";
+  return nearest && share(*nearest) > k_least_share ? rounded_text(100.0 * share(*nearest), 3) + " % " + nearest->name : "-";
 }
 
 void print_cases(std::ostream& out, const StaticProof& proof) {

@@ -11,7 +11,7 @@ namespace steplap {
 namespace {
 
 // Tolerance, so that a depth that is a whole number of sheets does not lose one by rounding.
-constexpr double k_rounding = 1e-9;
+constexpr double k_rounded_sheets = 1e-9;
 
 // Returns how many of the numbers 0 … n−1 leave the remainder `rest` when divided by `period`.
 long count_of(long n, long rest, long period) { return n > rest ? (n - 1 - rest) / period + 1 : 0; }
@@ -105,7 +105,7 @@ private:
 } // namespace
 
 long sheets_in(const Stack& stack, const Packet& packet) {
-  return std::lround(std::floor(packet.depth * stack.stacking_factor / stack.sheet_thickness + k_rounding));
+  return std::lround(std::floor(packet.depth * stack.stacking_factor / stack.sheet_thickness + k_rounded_sheets));
 }
 
 long sheets_in(const Stack& stack) {

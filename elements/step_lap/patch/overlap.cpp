@@ -14,7 +14,8 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_rounding = 1e-16; // relative rounding error of rotated and translated coordinates, in units of the size of both sheets
+constexpr double k_rounded_place =
+    1e-16; // relative rounding error of rotated and translated coordinates, in units of the size of both sheets
 
 // Cached from the previous call, since all sheets of a joint have the same pose.
 const portable::SinCos& turn_of(double angle) {
@@ -213,9 +214,9 @@ void intersect(const Outline& a, const Outline& b, const Pose& pose, OverlapWork
   if (circles_apart(a, b, pose, turn_of(pose.theta))) return;
   if (a.convex && b.convex) return intersect_convex(a, b, pose, w, out);
   const double reach = a.centre.norm() + a.radius + b.centre.norm() + b.radius;
-  if (trace(a, b, pose, k_rounding * reach, w, out)) return;
+  if (trace(a, b, pose, k_rounded_place * reach, w, out)) return;
   place(b.cut.corners, pose, turn_of(pose.theta), w.cells.placed);
-  join_cells(a.cut, b.cut, k_rounding * reach, least_area(a, b), w.cells, out);
+  join_cells(a.cut, b.cut, k_rounded_place * reach, least_area(a, b), w.cells, out);
 }
 
 void intersect_exactly(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w, Region& out) {
