@@ -78,8 +78,8 @@ std::vector<JointView> joint_views(const Model& model, const System& system) {
     const auto* friction = dynamic_cast<const StepLapFriction*>(unit.friction.get());
     if (!friction) continue;
     for (const ElementEntry& entry : model.elements)
-      if (entry.element->name == system.element_names[static_cast<std::size_t>(unit.element)])
-        views.push_back(look_at(dynamic_cast<const StepLapJoint&>(*entry.element), *friction, model, system));
+      if (entry.kind == &step_lap_joint_kind() && entry.element->name == system.element_names[static_cast<std::size_t>(unit.element)])
+        views.push_back(look_at(static_cast<const StepLapJoint&>(*entry.element), *friction, model, system));
   }
   return views;
 }

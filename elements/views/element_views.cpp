@@ -2,6 +2,7 @@
 
 #include "elements/catalog.h"
 #include "elements/joints.h"
+#include "elements/limit.h"
 #include "elements/machinery/rope.h"
 #include "elements/own_state.h"
 #include "elements/shape.h"
@@ -9,6 +10,7 @@
 #include "elements/step_lap/step_lap_assessment.h"
 #include "elements/step_lap/step_lap_interface.h"
 #include "elements/step_lap/step_lap_joint.h"
+#include "elements/unilateral_contact.h"
 #include "elements/views/far_joints.h"
 #include "elements/views/seams.h"
 #include "elements/views/start_checks.h"
@@ -77,13 +79,13 @@ KindViews element_views() {
   views.elements[&distance_kind()].pulls_between = ends_of_joint;
   views.elements[&spring_damper_kind()].pulls_between = ends_of_spring;
   views.elements[&rope_kind()].pulls_between = way_of_rope;
+  views.elements[&unilateral_contact_kind()].check_contact = check_foot;
+  views.elements[&limit_kind()].check_poses = check_stops;
   views.elements[&step_lap_joint_kind()].assess = assess;
   views.elements[&step_lap_interface_kind()].sheets = sheets_of;
   views.value_checks = {unlike_shapes};
   views.scene_checks = {doubled_corners};
   views.assembly_checks = {far_joints, stepped_feet};
-  views.start_checks = {check_feet};
-  views.given_pose_checks = {check_stops};
   return views;
 }
 

@@ -16,57 +16,68 @@ namespace {
 constexpr double k_leans = 2.0; // times the acceleration due to loads; a body that leans on a stiff stop is near its equilibrium
 
 // A gap, an interference or a preload shifts the contact line, so the position of marker b does not matter.
-void check_gap(StartScene& scene, const ContactAtStart& contact) {
-  const auto* const foot = dynamic_cast<const UnilateralContact*>(contact.entry->element.get());
-  if (!foot || !(foot->gap || foot->interference || foot->preload)) return;
+void check_gap(StartScene& scene, const ContactAtStart& contact, const UnilateralContact& foot) {
+  if (!(foot.gap || foot.interference || foot.preload)) return;
   const State given = scene.system.initial_state();
-  const Place a = place_of(scene.loaded.model, foot->a), b = place_of(scene.loaded.model, foot->b);
+  const Place a = place_of(scene.loaded.model, foot.a), b = place_of(scene.loaded.model, foot.b);
   const Vec3 at = pose_of(scene.system, given, a.body), on = pose_of(scene.system, given, b.body);
-  const Vec2 normal = rotated(foot->normal, b.angle + on.z()).normalized();
+  const Vec2 normal = rotated(foot.normal, b.angle + on.z()).normalized();
   const Vec2 p_a = Vec2(at.x(), at.y()) + rotated(a.point, at.z()), p_b = Vec2(on.x(), on.y()) + rotated(b.point, on.z());
   Vec2 along = normal;
-  if (foot->axis) along = rotated(*foot->axis, a.angle + at.z()).normalized();
+  if (foot.axis) along = rotated(*foot.axis, a.angle + at.z()).normalized();
   const double now = normal.dot(p_a - p_b) / normal.dot(along);
-  const double depth = foot->preload
-                           ? portable::pow(*foot->preload / (foot->stiffness * static_cast<double>(foot->count)), 1.0 / foot->exponent)
-                           : foot->interference.value_or(0.0);
+  const double depth = foot.preload ? portable::pow(*foot.preload / (foot.stiffness * static_cast<double>(foot.count)), 1.0 / foot.exponent)
+                                    : foot.interference.value_or(0.0);
   const double off =
-      foot->gap ? now - *foot->gap : std::min({now, now + depth}, [](double x, double y) { return std::abs(x) < std::abs(y); });
+      foot.gap ? now - *foot.gap : std::min({now, now + depth}, [](double x, double y) { return std::abs(x) < std::abs(y); });
   if (!(std::abs(off) > StartScene::k_off * size_of_pair(scene.system, contact.a, contact.b))) return;
-  const std::string field = foot->gap ? "gap" : foot->interference ? "interference" : "preload";
-  const double given_value = foot->gap ? *foot->gap : foot->interference ? *foot->interference : *foot->preload;
-  const Vec2 line = p_a - (foot->gap ? *foot->gap : -depth) * along;
+  const std::string field = foot.gap ? "gap" : foot.interference ? "interference" : "preload";
+  const double given_value = foot.gap ? *foot.gap : foot.interference ? *foot.interference : *foot.preload;
+  const Vec2 line = p_a - (foot.gap ? *foot.gap : -depth) * along;
   const std::string side = now < 0.0 ? " behind" : " before";
-  std::string text = "'" + foot->name + "': " + field + " = " + (foot->preload ? short_force(given_value) : short_length(given_value)) +
+  std::string text = "'" + foot.name + "': " + field + " = " + (foot.preload ? short_force(given_value) : short_length(given_value)) +
                      " contradicts the poses, by which its marker a is " + short_length(std::abs(now)) + side +
                      " the line through marker b: the line is taken to be " + short_length(std::abs(off)) +
                      " from there. If the poses are right, leave '" + field + "' out";
   if (!b.body)
     text += "; if the " + field + " is, b = { body = \"ground\", at = [" + three_digits(line.x()) + ", " + three_digits(line.y()) +
             "] } says the same without contradiction";
-  scene.add("gap_contradicts_poses", foot->where, text);
+  scene.add("gap_contradicts_poses", foot.where, text);
+}
+
+// Returns true if the contact is a foot beyond an end of its face.
+bool is_beside_face(const ContactAtStart& contact) {
+  if (contact.entry->kind != &unilateral_contact_kind()) return false;
+  const auto& ends = static_cast<const UnilateralContact&>(*contact.entry->element).ends;
+  return ends && (*contact.along < ends->x() || *contact.along > ends->y());
 }
 
 // The touching point is behind the line or near it, but beyond the end of the face, and no other contact is below it.
-void check_ends(StartScene& scene, const ContactAtStart& contact) {
-  const auto* const foot = dynamic_cast<const UnilateralContact*>(contact.entry->element.get());
-  if (!foot || !foot->ends || !contact.along) return;
-  const double beyond = std::max(foot->ends->x() - *contact.along, *contact.along - foot->ends->y());
+void check_ends(StartScene& scene, const ContactAtStart& contact, const UnilateralContact& foot) {
+  if (!foot.ends || !contact.along) return;
+  const double beyond = std::max(foot.ends->x() - *contact.along, *contact.along - foot.ends->y());
   if (!(beyond > 0.0) || contact.gap > size_of_pair(scene.system, contact.a, contact.b)) return;
   const bool is_elsewhere = std::any_of(scene.contacts.begin(), scene.contacts.end(), [&](const ContactAtStart& other) {
     if (&other == &contact || (other.a != contact.a && other.b != contact.a)) return false;
-    const auto* const face = dynamic_cast<const UnilateralContact*>(other.entry->element.get());
-    const bool is_beside = face && face->ends && (*other.along < face->ends->x() || *other.along > face->ends->y());
-    return !is_beside && other.gap <= StartScene::k_off * size_of_pair(scene.system, other.a, other.b);
+    return !is_beside_face(other) && other.gap <= StartScene::k_off * size_of_pair(scene.system, other.a, other.b);
   });
   if (is_elsewhere) return;
-  scene.add("foot_beside_face", foot->where,
-            "'" + foot->name + "' begins " + short_length(beyond) + " beside its face: marker a is at " + three_digits(*contact.along) +
-                " m along it, and 'ends' are " + three_digits(foot->ends->x()) + " m and " + three_digits(foot->ends->y()) +
+  scene.add("foot_beside_face", foot.where,
+            "'" + foot.name + "' begins " + short_length(beyond) + " beside its face: marker a is at " + three_digits(*contact.along) +
+                " m along it, and 'ends' are " + three_digits(foot.ends->x()) + " m and " + three_digits(foot.ends->y()) +
                 " m, counted along (n_y, -n_x) from marker b. Nothing carries it there");
 }
 
-void check_stop(StartScene& scene, const Limit& limit) {
+} // namespace
+
+void check_foot(StartScene& scene, const ContactAtStart& contact) {
+  const auto& foot = static_cast<const UnilateralContact&>(*contact.entry->element);
+  check_gap(scene, contact, foot);
+  check_ends(scene, contact, foot);
+}
+
+void check_stops(StartScene& scene, const Element& element) {
+  const auto& limit = static_cast<const Limit&>(element);
   const Place a = place_of(scene.loaded.model, limit.a), b = place_of(scene.loaded.model, limit.b);
   const bool is_angle = limit.coordinate == "angle", is_axis = limit.coordinate == "x" || limit.coordinate == "y";
   RowSpec row;
@@ -97,18 +108,6 @@ void check_stop(StartScene& scene, const Limit& limit) {
                 (is_angle
                      ? short_degrees(below > 0.0 ? *limit.lower - depth : *limit.upper + depth) + " or " + (below > 0.0 ? "less" : "more")
                      : short_length(below > 0.0 ? *limit.lower - depth : *limit.upper + depth) + (below > 0.0 ? " or less" : " or more")));
-}
-
-} // namespace
-
-void check_feet(StartScene& scene) {
-  for (const ContactAtStart& contact : scene.contacts) check_gap(scene, contact);
-  for (const ContactAtStart& contact : scene.contacts) check_ends(scene, contact);
-}
-
-void check_stops(StartScene& scene) {
-  for (const ElementEntry& entry : scene.loaded.model.elements)
-    if (const auto* const limit = dynamic_cast<const Limit*>(entry.element.get())) check_stop(scene, *limit);
 }
 
 } // namespace steplap

@@ -5,9 +5,9 @@
 
 namespace steplap {
 
-/// Checks `gap`, `interference` and `preload` of unilateral contacts against the poses, and whether a foot begins beside its face.
-void check_feet(StartScene& scene);
-/// Checks whether a coordinate begins beyond one of its stops.
-void check_stops(StartScene& scene);
+/// Checks `gap`, `interference` and `preload` of a unilateral contact against the poses, and whether its foot begins beside its face.
+void check_foot(StartScene& scene, const ContactAtStart& contact);
+/// Checks whether the coordinate of a limit begins beyond one of its stops.
+void check_stops(StartScene& scene, const Element& element);
 
 } // namespace steplap

@@ -1,5 +1,5 @@
-// What a run asks of kinds of elements and tables beyond their fields and laws: drawings, checks of the scene, assessments. The folders that
-// define the kinds fill the table (elements/views/element_views.h, transformer/program.h), so that this folder names no kind.
+// Table of functions with which kinds of elements and tables answer a run: drawings, checks of the scene, assessments. The folders that
+// define the kinds fill it (elements/views/element_views.h, transformer/program.h), so that this folder names no kind.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -15,6 +15,7 @@
 namespace steplap {
 
 class Sketch;
+struct ContactAtStart;
 struct LoadedModel;
 struct StartScene;
 
@@ -37,6 +38,10 @@ struct ElementView {
   std::vector<std::string> (*pulls_between)(const Element& element) = nullptr;
   /// Returns the assessment after a run, for joints that are held by friction.
   JointAssessment (*assess)(const Element& element, const Model& model, const RunResult& result) = nullptr;
+  /// Adds findings on a contact at the start of a run (start_scene.h).
+  void (*check_contact)(StartScene& scene, const ContactAtStart& contact) = nullptr;
+  /// Adds findings on an element in the given poses, for a run that begins with them.
+  void (*check_poses)(StartScene& scene, const Element& element) = nullptr;
   /// Returns the sheets that the element presses on each other; nothing if its joint does not exist.
   std::optional<DrawnSheets> (*sheets)(const Element& element, const Model& model) = nullptr;
 };
@@ -59,8 +64,6 @@ struct KindViews {
   std::vector<std::vector<Finding> (*)(const LoadedModel& loaded)> scene_checks;
   /// Return contradictions that affect a run only if assembly moved the bodies.
   std::vector<std::vector<Finding> (*)(const LoadedModel& loaded)> assembly_checks;
-  /// Add findings on the initial state (start_scene.h). The second list does not apply to a run that begins with a search for equilibrium.
-  std::vector<void (*)(StartScene& scene)> start_checks, given_pose_checks;
 
   /// Returns the answers of a kind; those without any answer if it has no entry.
   [[nodiscard]] ElementView of(const ElementKind& kind) const {

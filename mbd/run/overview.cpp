@@ -98,10 +98,10 @@ private:
   std::string sentence(const CriterionResult& c) const {
     if (const JointAssessment* joint = joint_that_slid(c)) {
       for (const StoryEntry& entry : overview_.story)
-        if (entry.what == "comes apart" && entry.who.front() == joint->joint)
+        if (entry.what == StorySubject::apart && entry.who.front() == joint->joint)
           return "Joint " + quoted(joint->joint) + " comes apart at " + time(entry.from) + ".";
       for (const StoryEntry& entry : overview_.story)
-        if (entry.what == "slips" && entry.who.size() == 1 && entry.who.front() == joint->joint && entry.amount) {
+        if (entry.what == StorySubject::slips && entry.who.size() == 1 && entry.who.front() == joint->joint && entry.amount) {
           const std::string slid =
               shown_quantity(entry.amount->value, "m", {.error = entry.amount->error, .scale = k_least_length_scale}, digits_);
           if (slid.starts_with("0 ")) continue; // it rotates in place
@@ -111,7 +111,8 @@ private:
     }
     const std::string at = c.t ? " at " + time(*c.t) : "";
     for (const StoryEntry& entry : overview_.story) // for ties
-      if (entry.what == "breaks" && c.name == c.where && entry.who.front() == c.where) return sentence_name(c.where) + " breaks" + at + ".";
+      if (entry.what == StorySubject::breaks && c.name == c.where && entry.who.front() == c.where)
+        return sentence_name(c.where) + " breaks" + at + ".";
     if (c.value && c.limit) {
       const bool is_below = std::abs(*c.value) < *c.limit || (*c.limit <= 0.0 && *c.value < *c.limit);
       const double column = std::max(std::abs(*c.value), std::abs(*c.limit));

@@ -274,7 +274,7 @@ Json story_json(const std::vector<StoryEntry>& story) {
   for (const StoryEntry& e : story)
     json.push_back({{"from", e.from},
                     {"to", e.to ? Json(*e.to) : Json()},
-                    {"what", e.what},
+                    {"what", key_of(e.what)},
                     {"who", e.who},
                     {"count", e.count},
                     {"amount", e.amount ? Json{{"value", number_json(e.amount->value)}, {"unit", e.amount->unit}} : Json()},

@@ -37,11 +37,13 @@ public:
   explicit StartFinder(const LoadedModel& loaded) : loaded_(loaded), system_(*loaded.system), scene_(loaded) {}
 
   std::vector<Finding> run() {
-    for (const auto check : loaded_.views->start_checks) check(scene_);
+    for (const ContactAtStart& contact : scene_.contacts)
+      if (const auto check = loaded_.views->of(*contact.entry->kind).check_contact) check(scene_, contact);
     // The search for an equilibrium also starts from these poses.
     if (loaded_.model.simulation.initial != "equilibrium") {
       for (const ContactAtStart& contact : scene_.contacts) check_depth(contact);
-      for (const auto check : loaded_.views->given_pose_checks) check(scene_);
+      for (const ElementEntry& entry : loaded_.model.elements)
+        if (const auto check = loaded_.views->of(*entry.kind).check_poses) check(scene_, *entry.element);
     }
     const std::vector<double> reaches = body_reaches(loaded_.model);
     const double extent = scene_extent(loaded_.model, reaches);

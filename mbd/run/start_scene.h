@@ -1,5 +1,5 @@
 // The initial state of a run as its checks see it: contacts, forces, and the findings so far. Kinds add checks of their own fields
-// (KindViews::start_checks).
+// (ElementView).
 #pragma once
 
 #include "mbd/run/finding.h"

@@ -18,30 +18,8 @@ namespace steplap {
 
 namespace {
 
-// Subject of a story entry. If an element opens and closes repeatedly, its first event decides whether the entry says "opens" or "closes":
-// a resting foot lifts, a flying ball touches.
-enum class StorySubject {
-  slips,
-  would_slip,
-  lifts,
-  opens,
-  touches,
-  slack,
-  taut,
-  leaves_gap,
-  closes_gap,
-  strikes,
-  leaves_stop,
-  tips,
-  breaks,
-  apart,
-  interface,
-  storm,
-  happens
-};
-
 struct SubjectText {
-  const char* key;     // StoryEntry::what
+  const char* key;     // key_of()
   const char* verb;    // singular
   const char* several; // plural
 };
@@ -452,13 +430,13 @@ public:
   }
 
   StoryEntry entry(const Happening& h) const {
-    return {h.from, is_instant(h.what) ? std::nullopt : h.to, words_of(h.what).key, {h.who}, h.count, h.amount, sentence(h)};
+    return {h.from, is_instant(h.what) ? std::nullopt : h.to, h.what, {h.who}, h.count, h.amount, sentence(h)};
   }
 
   // Merges elements with the same occurrence into one entry.
   StoryEntry entry(const std::vector<const Happening*>& group) const {
     const Happening* most = nullptr;
-    StoryEntry entry{group.front()->from, group.front()->from, words_of(group.front()->what).key, {}, 0, {}, ""};
+    StoryEntry entry{group.front()->from, group.front()->from, group.front()->what, {}, 0, {}, ""};
     bool lasts = false;
     for (const Happening* h : group) {
       entry.who.push_back(h->who);
@@ -499,10 +477,20 @@ std::string sentence_name(std::string name) {
   return shown(name);
 }
 
+const char* key_of(StorySubject what) { return words_of(what).key; }
+
 bool tells_of_motion(const StoryEntry& entry) {
-  for (const char* what : {"slips", "lifts", "opens", "breaks", "comes apart", "tips", "loses an interface"})
-    if (entry.what == what) return true;
-  return false;
+  switch (entry.what) {
+  case StorySubject::slips:
+  case StorySubject::lifts:
+  case StorySubject::opens:
+  case StorySubject::leaves_gap:
+  case StorySubject::breaks:
+  case StorySubject::apart:
+  case StorySubject::tips:
+  case StorySubject::interface: return true;
+  default: return false;
+  }
 }
 
 std::vector<StoryEntry> story_of(const Report& report, const RangeIndex& ranges, ShownDigits digits) {

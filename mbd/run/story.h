@@ -9,6 +9,7 @@
 #include "mbd/run/shown_quantity.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,11 +26,35 @@ struct StoryAmount {
 /// Reference length, m. Lengths below 1e-9 of it are rounding, because positions are known to 1e-12 m.
 constexpr double k_least_length_scale = 1e-3;
 
+/// Subject of an entry. If an element opens and closes repeatedly, its first event decides whether the entry says "opens" or "closes": a
+/// resting foot lifts, a flying ball touches.
+enum class StorySubject : std::uint8_t {
+  slips,
+  would_slip,
+  lifts,
+  opens,
+  touches,
+  slack,
+  taut,
+  leaves_gap,
+  closes_gap,
+  strikes,
+  leaves_stop,
+  tips,
+  breaks,
+  apart,
+  interface,
+  storm,
+  happens
+};
+/// Returns the key of a subject in summary.json: "slips", "lifts", "opens", "closes", "tips", "breaks", "strikes", …
+[[nodiscard]] const char* key_of(StorySubject what);
+
 /// Something that happened once or repeatedly.
 struct StoryEntry {
-  double from = 0.0;                 ///< first begin, s
-  std::optional<double> to;          ///< last end, s; empty for an instant, or if it lasts until the end of the run
-  std::string what;                  ///< "slips", "lifts", "opens", "closes", "tips", "breaks", "strikes", …
+  double from = 0.0;        ///< first begin, s
+  std::optional<double> to; ///< last end, s; empty for an instant, or if it lasts until the end of the run
+  StorySubject what = StorySubject::slips;
   std::vector<std::string> who;      ///< names of elements; for "tips", of bodies
   std::size_t count = 1;             ///< number of occurrences
   std::optional<StoryAmount> amount; ///< largest amount

@@ -166,7 +166,7 @@ std::vector<Compared> friction_damper() {
         return data.value(row, "set") == number && data.value(row, "frequency") == frequency && data.value(row, "nominal") == nominal;
       });
     };
-    // Of a cycle with friction F and slack d, E = 4 F (A - d/2) becomes heat: a straight line over the amplitude.
+    // A cycle with friction F and slack d turns E = 4 F (A - d/2) into heat, a straight line over the amplitude A.
     const double small = mean(cycles("amplitude", 0.25, 0.0127)), large = mean(cycles("amplitude", 0.25, 0.0254));
     const double energy = mean(cycles("energy", 0.25, 0.0127));
     const double friction = (mean(cycles("energy", 0.25, 0.0254)) - energy) / (4.0 * (large - small));

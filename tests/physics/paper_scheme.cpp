@@ -50,7 +50,7 @@ struct Machine {
   double mu_static = 0, mu_kinetic = 0, peak = 0, start = 0, duration = 0, speed = 0;
   bool is_triangle = false;
 
-  // Of the vehicle, m/s².
+  // Returns the acceleration of the vehicle, m/s².
   [[nodiscard]] double acceleration(double t) const {
     const double share = (t - start) / duration;
     if (share <= 0.0 || share >= 1.0) return 0.0;
@@ -119,7 +119,7 @@ struct Pose {
     const Vec2 local = settled - k_lower;
     return r5 + e5 * (local.x() + (part == Part::upper ? q[k_s4] : 0.0)) + n5 * local.y();
   }
-  // Of a point that is at `p` now and fixed in `part`.
+  // Returns the velocity rows of a point that is fixed in `part` and is now at `p`.
   [[nodiscard]] PointRows rows(Part part, const Vec2& p) const {
     PointRows j = PointRows::Zero();
     if (part == Part::ground) return j;

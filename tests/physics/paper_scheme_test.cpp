@@ -19,7 +19,7 @@ Model model_called(const std::string& name) {
 
 std::size_t sample(double t, double step) { return static_cast<std::size_t>(std::lround(t / step)); }
 
-// Of the entries of a series within [from, to].
+// Returns the largest less the smallest entry of a series within [from, to].
 double range(const std::vector<double>& series, std::size_t from, std::size_t to) {
   const auto begin = series.begin() + static_cast<std::ptrdiff_t>(from), end = series.begin() + static_cast<std::ptrdiff_t>(to) + 1;
   const auto [low, high] = std::minmax_element(begin, end);

@@ -31,7 +31,7 @@ struct PyModel {
 /// Returns the model as given, for setting values in it.
 [[nodiscard]] Model given_model(const PyModel& model);
 
-/// What happened at one instant, as Python shows it.
+/// Event at one instant, as Python shows it.
 struct PyEvent {
   double t = 0.0; ///< s
   std::string element, words;

@@ -66,7 +66,7 @@ TEST_CASE("criteria that hold in a run which an action ends hold up to there, an
 TEST_CASE("a brake that is released slips no more") {
   const Overview overview = overview_of(judged_run(disc(action("off", "disc.omega < '6 rad/s'", "release brake"))));
   const auto slips =
-      std::find_if(overview.story.begin(), overview.story.end(), [](const StoryEntry& entry) { return entry.what == "slips"; });
+      std::find_if(overview.story.begin(), overview.story.end(), [](const StoryEntry& entry) { return entry.what == StorySubject::slips; });
   REQUIRE(slips != overview.story.end());
   REQUIRE(slips->to.has_value());
   CHECK(*slips->to == doctest::Approx(2.0).epsilon(1e-9)); // 4 rad/s at 2 rad/s²

@@ -179,6 +179,8 @@ TEST_CASE("one lift has one name, whatever the kind of contact") {
   for (const char* name : {"hop_foot", "hop_segment", "hop_polygon", "hop_circle"}) {
     const Report report = run_of(name);
     const Overview overview = overview_of(report);
-    CHECK_MESSAGE(std::any_of(overview.story.begin(), overview.story.end(), [](const auto& entry) { return entry.what == "lifts"; }), name);
+    CHECK_MESSAGE(
+        std::any_of(overview.story.begin(), overview.story.end(), [](const auto& entry) { return entry.what == StorySubject::lifts; }),
+        name);
   }
 }

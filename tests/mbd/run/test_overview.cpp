@@ -15,7 +15,7 @@ Report run_of(const std::string& model, const std::vector<std::string>& override
   return judged_run(load_model(std::string(STEPLAP_MODELS) + "/" + model + ".toml", overrides));
 }
 
-const StoryEntry* entry_of(const Overview& overview, const std::string& who, const std::string& what) {
+const StoryEntry* entry_of(const Overview& overview, const std::string& who, StorySubject what) {
   for (const StoryEntry& entry : overview.story)
     if (entry.what == what && std::find(entry.who.begin(), entry.who.end(), who) != entry.who.end()) return &entry;
   return nullptr;
@@ -28,7 +28,7 @@ TEST_CASE("a joint that slips is the reason, the first one, and the story tells 
   const Overview overview = overview_of(report);
   CHECK(overview.verdict == Verdict::inspect);
   CHECK(overview.reason.starts_with("Joint 'back joint' slips at 0.11 s and slides 0.855 mm."));
-  const StoryEntry* slip = entry_of(overview, "back joint", "slips");
+  const StoryEntry* slip = entry_of(overview, "back joint", StorySubject::slips);
   REQUIRE(slip != nullptr);
   std::vector<double> begins, ends;
   for (const Event& event : report.run.result.events) {
@@ -39,20 +39,20 @@ TEST_CASE("a joint that slips is the reason, the first one, and the story tells 
   CHECK(slip->from == begins.front());
   CHECK(slip->to == std::optional(ends.back()));
   CHECK(std::find(overview.moved.begin(), overview.moved.end(), "back joint") != overview.moved.end());
-  CHECK(entry_of(overview, "rear foot", "lifts") != nullptr);
+  CHECK(entry_of(overview, "rear foot", StorySubject::lifts) != nullptr);
 }
 
 TEST_CASE("a joint that turns about its middle slips, and slides no way that is rounding") {
   const Overview overview = overview_of(run_of("benchmarks/hard/patch_rotation"));
-  const StoryEntry* const slip = entry_of(overview, "joint", "slips");
+  const StoryEntry* const slip = entry_of(overview, "joint", StorySubject::slips);
   REQUIRE(slip != nullptr);
   CHECK(slip->text == "Joint slips from 0.0517 s to the end.");
 }
 
 TEST_CASE("a wheel leaves its track as a foot its floor: it lifts") {
   const Overview overview = overview_of(judged_run(load_model(std::string(STEPLAP_TEST_DATA) + "/defects/wheelie.toml", {})));
-  CHECK(entry_of(overview, "front tyre", "lifts") != nullptr);
-  CHECK(entry_of(overview, "front tyre", "opens") == nullptr);
+  CHECK(entry_of(overview, "front tyre", StorySubject::lifts) != nullptr);
+  CHECK(entry_of(overview, "front tyre", StorySubject::opens) == nullptr);
 }
 
 TEST_CASE("utilisations are sorted, and those beyond their limits are the criteria that are not met") {
@@ -111,7 +111,7 @@ TEST_CASE("reactions that diverge have no error, and trust says so") {
 TEST_CASE("many elements that do the same are one entry") {
   const Overview overview = overview_of(run_of("machines/pile"));
   CHECK(overview.story.size() <= 8);
-  const StoryEntry* slips = entry_of(overview, "stone 1 on the floor", "slips");
+  const StoryEntry* slips = entry_of(overview, "stone 1 on the floor", StorySubject::slips);
   REQUIRE(slips != nullptr);
   CHECK(slips->who.size() > 5);
 }

@@ -41,7 +41,7 @@ EXTENTS = """const s = steplap.page.scenes[0], k = s.svg.clientWidth / s.width; 
       return [b.name, Math.hypot(m.a, m.b) / (k * s.scale), d.x, d.y, d.x + d.width, d.y + d.height, Math.min(...x), Math.min(...y), Math.max(...x), Math.max(...y)]; })"""
 
 
-# Of each name of a scene: its body, and the bodies at its middle as they are painted, the first on top; what stands around its body is left out.
+# Returns for each name in a scene its body and the bodies painted at its middle, top first. Names beside their body are left out.
 NAMES = """const scene = steplap.page.scenes[arguments[0]]; scene.svg.scrollIntoView({ block: 'center' });
     return [...scene.svg.querySelectorAll('[data-name-of]')].filter((e) => e.style.display !== 'none').map((e) => { const r = e.querySelector('text').getBoundingClientRect(), x = (r.left + r.right) / 2, y = (r.top + r.bottom) / 2;
       const found = document.elementsFromPoint(x, y).map((p) => p.closest('.body')).filter(Boolean), reach = (name) => scene.body(name).reach, own = e.dataset.nameOf;

@@ -1,4 +1,4 @@
-// What of a picture is shown: names, forces, springs … A choice hides its layer in all pictures of a box.
+// Switches of the layers of a picture: names, forces, springs … A choice hides its layer in all pictures of a box.
 steplap.layers = (() => {
   const make = steplap.make;
   const all = [['names', 'Names'], ['forces', 'Forces'], ['springs', 'Springs'],

@@ -38,7 +38,7 @@
       const note = [guess, values, from, names].find((text) => text && 6.6 * text.length < room) || '';
       this.put(this.seenText, note, left + width + 70 + 0.5 * Math.max(0, room), y + 4, 'middle');
     },
-    // What is magnified, and how far.
+    // Returns the note that names the magnified bodies and their factors.
     motionNote(isNarrow) {
       const isChoice = Boolean(document.getElementById('magnification')), plain = (f) => steplap.data.plain(f, 3);
       const offer = `true scale${isNarrow ? '' : ' – enlarge motion'}`;

@@ -1,4 +1,4 @@
-// What parts of bodies are ([[look]] of the model): wheels, windings, wooden blocks, feet, tanks with their oil, roads and rails.
+// Draws the parts of bodies that the model describes by [[look]]: wheels, windings, wooden blocks, feet, tanks with their oil, roads and rails.
 (() => {
   const make = steplap.make;
   const turns = 9; // lines of a winding
@@ -41,7 +41,7 @@
 
   Object.assign(steplap.Scene.prototype, {
     looksOf(name) { return (this.run.drawing.looks || []).filter((look) => look.body === name); },
-    // What is drawn in the body's axes.
+    // Returns the shapes of a body's looks in its axes.
     looksShapes(body) {
       const partsOf = (look) => (drawn[look.draw] ? look.at.flatMap((at) => drawn[look.draw](look, at)) : []);
       return this.looksOf(body.name).flatMap((look) => (look.draw === 'tank' ? tank(look, body) : partsOf(look)));

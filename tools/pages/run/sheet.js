@@ -10,7 +10,7 @@ steplap.sheet = (() => {
     return letters.length > limit ? `${letters.slice(0, limit - 1).join('')}…` : letters.join('');
   }
   const part = (title, ...content) => make('div', {}, make('h2', {}, title), ...content);
-  // What is left out: the page of an assessment has it behind its sheet, a sheet alone has nothing behind it.
+  // Lines that do not fit are counted. The page of an assessment shows them behind its sheet; a sheet alone refers to the report.
   const elsewhere = document.body.classList.contains('assessment') ? 'on the sheets behind' : 'in the report';
   const rest = (all, kept, what) => (all > kept ? [make('p', { class: 'more' }, `${all - kept} more ${what} ${elsewhere}.`)] : []);
   const list = (texts) => make('ul', {}, ...texts.map((t) => make('li', {}, t)));

@@ -120,7 +120,7 @@
       this.foundCarriers = carriers;
       return carriers;
     },
-    // What turns over or rolls carries nothing that could be told from its own motion: what carries it does.
+    // A body that rolls or turns over carries nothing: its load is drawn relative to the body that carries the roller.
     carrierOf(name) {
       let carrier = this.carriers().get(name) || 'ground';
       while (carrier !== 'ground' && this.largestTurnOf(carrier) > largestTurn) carrier = this.carriers().get(carrier) || 'ground';

@@ -17,7 +17,7 @@ study.answers = (() => {
     const decimals = Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(width)))), text = (v) => (100 * v).toFixed(decimals);
     return `${text(f.value)}\u202f% (${text(f.low)} to ${text(f.high)}\u202f%)`;
   }
-  // Of several methods the one without a doubt, with an interval, with the narrowest one.
+  // Orders the results of several methods: without doubt first, then with an interval, then by its width.
   const rank = (f) => [f.status ? 1 : 0, f.low === null || f.high === null ? 1 : 0, f.high - f.low || 0];
   const byRank = (a, b) => { const [p, q] = [rank(a), rank(b)], k = p.findIndex((v, i) => v !== q[i]); return k < 0 ? 0 : p[k] - q[k]; };
   const largest = (list) => [...list].sort((a, b) => Math.abs(b.value) - Math.abs(a.value)).slice(0, 1);
@@ -41,7 +41,7 @@ study.answers = (() => {
     for (const f of list) groups.set(f.subject, [...(groups.get(f.subject) || []), f]);
     return [...groups.values()];
   }
-  // What was fitted, in one sentence.
+  // Names the fitted variables in one sentence.
   function fitted(found) {
     const values = found.filter((f) => f.method === 'fit' && f.role === 'base' && isKnown(f))
       .map((f) => `${f.subject} ${quantity(f)}${between(f)}`);

@@ -6,7 +6,7 @@ from typing import Any
 
 from ._steplap import Model, Run, _samples
 
-# Of the page of a run the picture and its clock.
+# Style that shows only the picture and the clock of a run's page.
 _PICTURE_ONLY = "<style>header, footer, #verdict, #near, #plots, #results, #sheets, #more { display: none }</style>"
 
 
