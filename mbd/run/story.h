@@ -29,23 +29,23 @@ constexpr double k_least_length_scale = 1e-3;
 /// Subject of an entry. If an element opens and closes repeatedly, its first event decides whether the entry says "opens" or "closes": a
 /// resting foot lifts, a flying ball touches.
 enum class StorySubject : std::uint8_t {
-  slips,
-  would_slip,
-  lifts,
-  opens,
-  touches,
-  slack,
-  taut,
-  leaves_gap,
-  closes_gap,
-  strikes,
-  leaves_stop,
-  tips,
-  breaks,
-  apart,
-  interface,
-  storm,
-  happens
+  slips,       ///< friction or a joint
+  would_slip,  ///< a monitored joint beyond its capacity
+  lifts,       ///< a foot that stood
+  opens,       ///< a contact
+  touches,     ///< a contact that was open
+  slack,       ///< a rope loses its tension
+  taut,        ///< a rope
+  leaves_gap,  ///< an arresting device leaves contact
+  closes_gap,  ///< an arresting device comes into contact
+  strikes,     ///< a stop is reached
+  leaves_stop, ///< a stop is left
+  tips,        ///< a body
+  breaks,      ///< a tie
+  apart,       ///< a joint comes apart
+  interface,   ///< a joint loses an interface
+  storm,       ///< an element changes too often to be followed
+  happens      ///< an action
 };
 /// Returns the key of a subject in summary.json: "slips", "lifts", "opens", "closes", "tips", "breaks", "strikes", …
 [[nodiscard]] const char* key_of(StorySubject what);

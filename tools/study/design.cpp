@@ -207,11 +207,9 @@ private:
 
   [[nodiscard]] bool is_list() const { return !variable_.values.empty(); }
 
-  // Keeps a margin away from zero, so that its sign says whether the value holds. A margin of zero to rounding does not hold: a joint that
-  // slides has the margin 1 to 3e-13, on either side.
-  [[nodiscard]] double signed_margin(const DesignValue& value) const {
-    constexpr double k_least = 1e-12, k_rounded = 1e-11; // relative to the largest margin
-    if (!target_ && std::abs(value.margin) <= k_rounded * largest_) return -k_least;
+  // Keeps a margin away from zero, which holds, so that its sign says whether the value holds.
+  static double signed_margin(const DesignValue& value) {
+    constexpr double k_least = 1e-12;
     if (!value.doubt.empty()) return std::min(std::isnan(value.margin) ? -1.0 : value.margin, -k_least);
     return value.margin < 0.0 ? std::min(value.margin, -k_least) : std::max(value.margin, k_least);
   }
@@ -248,7 +246,6 @@ private:
     for (std::size_t i = 0; i < xs.size(); ++i) {
       const Outcome& outcome = rows[i].outcome;
       const auto least = std::min_element(outcome.numbers.begin() + static_cast<long>(first), outcome.numbers.end());
-      if (std::isfinite(*least)) largest_ = std::max(largest_, std::abs(*least));
       known_[xs[i]] = {*least, outcome.status == SampleStatus::ok ? "" : outcome.reason};
       governing_[xs[i]] = static_cast<std::size_t>(least - outcome.numbers.begin()) - first;
     }
@@ -307,7 +304,7 @@ private:
       return claim + " if " + subject() + " is " +
              intervals_text(intervals, variable_.unit, digits(), target_ ? std::optional(settings_.confidence) : std::nullopt) + ".";
     const auto best = std::max_element(known_.begin(), known_.end(),
-                                       [this](const auto& a, const auto& b) { return signed_margin(a.second) < signed_margin(b.second); });
+                                       [](const auto& a, const auto& b) { return signed_margin(a.second) < signed_margin(b.second); });
     return claim + " with no value of " + subject() + " that was tried, " + quantity(known_.begin()->first) + " to " +
            quantity(known_.rbegin()->first) + ". Nearest is " + quantity(best->first) + ": " + reason_at(best->first);
   }
@@ -320,7 +317,7 @@ private:
     const std::size_t limit = governing_.at(x);
     const std::string& name = run_.study().limit_states[limit].name;
     const StudyModel* model = model_of_limit(run_.loaded, limit);
-    if (!model) return "limit state '" + name + (signed_margin(value) < value.margin ? "' is zero to rounding." : "' is negative.");
+    if (!model) return "limit state '" + name + "' is negative.";
     const std::string reason = reason_of_verdict(run_.loaded, *model, values_at(x).data());
     return model->load ? "in case '" + model->name + "' " + reason : reason;
   }
@@ -374,7 +371,6 @@ private:
   std::optional<double> target_;
   TargetSearch search_;
   std::map<double, DesignValue> known_;     ///< all values that were tried
-  double largest_ = 0.0;                    ///< largest absolute margin so far, without target
   std::map<double, std::size_t> governing_; ///< index of the least limit state
   Answer answer_;
 };

@@ -164,17 +164,6 @@ at_least = "-30 mm"
   CHECK(first_line(outcome.out) == "All limits hold if 'n' is from 4 to 6 (the end of the range).");
 }
 
-// A joint that slides has the margin 1 to rounding. The limit state is 0 ± 1e-13 up to x = 1, where nothing decides its sign.
-TEST_CASE("a limit that is zero to rounding does not hold") {
-  StudyBench bench;
-  const Outcome outcome = bench.run(formula("x - 1 + abs(x - 1) + 1e-13*cos(40*x)", "range = [0, 3]", "tolerance = 1e-6\n"));
-  CAPTURE(outcome.out);
-  REQUIRE(outcome.code == 0);
-  const study::Finding from = bench.find("design", "holds from");
-  CHECK(from.value >= 1.0);
-  CHECK(from.value <= 1.0 + 2e-6); // the tolerance
-}
-
 // The load of a monitored joint does not depend on the pressure, so it would slip where the pressure falls below the largest required one of
 // a run: without and with interference.
 TEST_CASE("the clamping with which no joint of the paper's transformer slips") {
