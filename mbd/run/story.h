@@ -52,13 +52,13 @@ enum class StorySubject : std::uint8_t {
 
 /// Something that happened once or repeatedly.
 struct StoryEntry {
-  double from = 0.0;        ///< first begin, s
-  std::optional<double> to; ///< last end, s; empty for an instant, or if it lasts until the end of the run
-  StorySubject what = StorySubject::slips;
-  std::vector<std::string> who;      ///< names of elements; for "tips", of bodies
-  std::size_t count = 1;             ///< number of occurrences
-  std::optional<StoryAmount> amount; ///< largest amount
-  std::string text;                  ///< sentence: "Block slides 46 mm on deck from 0.122 s to 0.15 s."
+  double from = 0.0;                       ///< first begin, s
+  std::optional<double> to;                ///< last end, s; empty for an instant, or if it lasts until the end of the run
+  StorySubject what = StorySubject::slips; ///< the kind of occurrence
+  std::vector<std::string> who;            ///< names of elements; for "tips", of bodies
+  std::size_t count = 1;                   ///< number of occurrences
+  std::optional<StoryAmount> amount;       ///< largest amount
+  std::string text;                        ///< sentence: "Block slides 46 mm on deck from 0.122 s to 0.15 s."
 };
 
 /// Returns the entries in order of their begin.
