@@ -39,7 +39,7 @@ public:
   }
 };
 
-RowSpec slide_row(const ContactGeometry& g, int memory) {
+RowSpec slide_row(const ContactGeometry& g, int base) {
   RowSpec row;
   row.kind = MeasureKind::slide;
   row.a = g.a;
@@ -49,7 +49,7 @@ RowSpec slide_row(const ContactGeometry& g, int memory) {
   row.direction = g.gap.normal;
   row.contact_axis = g.gap.axis;
   row.is_axis_in_a = g.gap.is_axis_in_a;
-  row.memory = memory;
+  row.base = base;
   row.quantity = "slide";
   return row;
 }
@@ -153,8 +153,8 @@ void compile_rolling(const CoulombStick& e, SystemBuilder& builder) {
   if (!index) return; // the contact's own error is reported
   const Element& contact = *builder.element(e.contacts.front())->element;
   std::vector<RowSpec> rows = rolling_rows(contact, builder);
-  const int memory = builder.add_memory();
-  for (RowSpec& row : rows) row.memory = memory;
+  const int base = builder.add_base();
+  for (RowSpec& row : rows) row.base = base;
   std::unique_ptr<CoulombFriction> friction;
   if (const auto* segment = dynamic_cast<const SegmentContact*>(&contact)) {
     auto own = std::make_unique<SegmentFriction>();
@@ -206,11 +206,11 @@ void compile_coulomb(const Element& element, SystemBuilder& builder) {
   auto friction = std::make_unique<CoulombFriction>();
   if (!collect(e, builder, geometry, friction->contacts, friction->damping, friction->may_pull)) return;
 
-  const int memory = builder.add_memory();
+  const int base = builder.add_base();
   const auto slide_of = [&](const ContactGeometry& g) { return evaluate_row<false>(slide_row(g, -1), &builder.reference(0)).value; };
   const auto [rear, front] = std::minmax_element(
       geometry.begin(), geometry.end(), [&](const ContactGeometry& x, const ContactGeometry& y) { return slide_of(x) < slide_of(y); });
-  friction->feet = {slide_row(*rear, memory), slide_row(*front, memory)};
+  friction->feet = {slide_row(*rear, base), slide_row(*front, base)};
   friction->has_two_feet = rear != front;
   if (friction->has_two_feet) friction->level = level_angle(*rear, *front, builder);
   friction->mass = lighter_mass(geometry.front(), builder);

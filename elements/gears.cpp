@@ -14,7 +14,7 @@ constexpr double k_pitch_tolerance = 1e-6;
 
 void add_row(RowSpec row, SystemBuilder& builder) {
   row.quantity = "force";
-  row.memory = builder.add_memory(evaluate_row<false>(row, &builder.reference(0)).value);
+  row.base = builder.add_base(evaluate_row<false>(row, &builder.reference(0)).value);
   const int r = builder.next_row();
   builder.add_channel("force", "N",
                       {"force between the teeth, on a", "along the common tangent, as a's rim moves when it turns counter-clockwise"},

@@ -175,7 +175,7 @@ void compile_joint_friction(const Element& element, SystemBuilder& builder) {
   row.point_b = b.point;
   row.quantity = e.coordinate == "angle" ? "angle" : "slide";
   row.element = builder.element_index();
-  row.memory = builder.add_memory();
+  row.base = builder.add_base();
   if (e.coordinate == "angle") row.kind = MeasureKind::angle;
   else if (e.coordinate == "distance") row.kind = MeasureKind::distance;
   else row.direction = builder.direction(b, e.coordinate == "x" ? Vec2(1.0, 0.0) : Vec2(0.0, 1.0));

@@ -30,7 +30,7 @@ RowSpec row_between(const Ends& ends, MeasureKind kind, const Vec2& direction, c
 
 // Constrains the row to its value in the reference pose.
 void hold_as_given(RowSpec& row, SystemBuilder& builder) {
-  row.memory = builder.add_memory(evaluate_row<false>(row, &builder.reference(0)).value);
+  row.base = builder.add_base(evaluate_row<false>(row, &builder.reference(0)).value);
 }
 
 bool joins_two_bodies(const Ends& ends, SystemBuilder& builder) {
@@ -137,7 +137,7 @@ void compile_distance(const Element& element, SystemBuilder& builder) {
   RowSpec row = row_between(ends, MeasureKind::distance, Vec2::Zero(), "force");
   const double now = (builder.marker_position(ends.a) - builder.marker_position(ends.b)).norm();
   if (now < 1e-12) return builder.error("its ends coincide, so its direction is undefined: use a revolute joint");
-  row.memory = builder.add_memory(e.length.value_or(now));
+  row.base = builder.add_base(e.length.value_or(now));
   add(builder, {row});
 }
 

@@ -229,7 +229,7 @@ public:
   // Largest velocity error of a contact point, m/s; friction of a tenth of the weight removes it within a microsecond.
   static constexpr double k_most_error = 1e-6;
 
-  void make_places(int memory) {
+  void make_places(int base) {
     const int of_a = outlines->a.edge_count(), of_b = outlines->b.edge_count();
     for (int face = 0; face < of_a + of_b; ++face) {
       first.push_back(static_cast<int>(places.size()));
@@ -237,7 +237,7 @@ public:
       for (int corner = 0; corner < other.corner_count(); ++corner)
         for (const bool is_edge : {false, true}) {
           places.push_back({face, corner, is_edge});
-          feet.push_back(row_of(places.back(), memory));
+          feet.push_back(row_of(places.back(), base));
         }
     }
     lever = std::max(outlines->reach_a, outlines->reach_b);
@@ -322,7 +322,7 @@ private:
     const double highest = std::max(h.of[i], h.of[next]);
     return std::min(-highest, std::min(h.of[h.before(i)], h.of[h.after(next)]) - highest);
   }
-  [[nodiscard]] RowSpec row_of(const HoldingPlace& place, int memory) const {
+  [[nodiscard]] RowSpec row_of(const HoldingPlace& place, int base) const {
     const int of_a = outlines->a.edge_count();
     const bool is_of_a = place.face < of_a;
     const ConvexOutline &own = is_of_a ? outlines->a : outlines->b, &other = is_of_a ? outlines->b : outlines->a;
@@ -334,7 +334,7 @@ private:
     row.point_a = place.is_edge ? Vec2(0.5 * (other.corners[place.corner] + other.corners[next])) : other.corners[place.corner];
     row.direction = own.normals[edge];
     row.point_b = own.offsets[edge] * row.direction;
-    row.memory = memory;
+    row.base = base;
     row.quantity = "slide";
     return row;
   }
@@ -393,7 +393,7 @@ void add_friction(const PolygonContact& e, const PolygonGroup::ElementData& entr
   friction->a = entry.a;
   friction->b = entry.b;
   friction->contacts.push_back({entry.contact, entry.unit});
-  friction->make_places(builder.add_memory());
+  friction->make_places(builder.add_base());
   for (RowSpec& row : friction->feet) row.element = builder.element_index();
   friction->mu_static = *e.static_friction;
   friction->mu_kinetic = e.kinetic_friction.value_or(*e.static_friction);

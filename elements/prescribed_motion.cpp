@@ -75,7 +75,7 @@ void compile_prescribed(const Element& element, SystemBuilder& builder) {
   const double base = e.zero == "reference" ? now : 0.0;
   if (row.level == DriveLevel::position) // also for a position relative to the reference pose: a start would move the body without notice
     if (const double wanted = base + row.drive->value(0.0); jumps(now, wanted)) return builder.error(start_message(e, row, now, wanted));
-  row.memory = builder.add_memory(base);
+  row.base = builder.add_base(base);
   const int r = builder.next_row();
   builder.add_channel("reaction", row.kind == MeasureKind::angle ? "N m" : "N",
                       {"force or couple on a that the motion takes", "positive: towards larger values of the coordinate"},

@@ -28,8 +28,10 @@ inline void add_share_channel(SystemBuilder& builder, const FrictionElement& fri
   };
   // A share is never below zero: where it was zero once, only its largest value is looked for. At each reversal of λ it has a kink
   // there, which would cost several evaluations. Nor is it above 1, which it has reached where it has slipped.
-  builder.add_channel("share", "", {"force over what holds at the same instant; 1 where it slips, 0 without load", "never negative"}, share)
-      .bounds = [share, f = builder.next_friction()](const Snapshot& s) {
+  Channel& channel = builder.add_channel(
+      "share", "", {"force over what holds at the same instant; 1 where it slips, 0 without load", "never negative"}, share);
+  channel.role = ChannelRole::friction_use;
+  channel.bounds = [share, f = builder.next_friction()](const Snapshot& s) {
     return ValueBounds{0.0, s.evaluation->friction[f].has_slipped ? 1.0 : share(s)};
   };
 }

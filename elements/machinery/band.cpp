@@ -76,8 +76,10 @@ void add_shared_channels(const Group& group, int i, SystemBuilder& builder) {
                       [inner = group.entries[static_cast<std::size_t>(i)].inner](const Snapshot& s) { return s.evaluation->inner[inner]; });
   builder.add_channel("slip_rate", "m/s", {"at which it slides", "positive: towards its second part"},
                       [&group, i](const Snapshot& s) { return group.flow_now(i, *s.evaluation).slip; });
-  builder.add_channel("share", "", "of what friction can hold, by the logarithm of the ratio of tensions; 1 where it slides",
-                      [&group, i](const Snapshot& s) { return share_of(group.flow_now(i, *s.evaluation)); });
+  builder
+      .add_channel("share", "", "of what friction can hold, by the logarithm of the ratio of tensions; 1 where it slides",
+                   [&group, i](const Snapshot& s) { return share_of(group.flow_now(i, *s.evaluation)); })
+      .role = ChannelRole::friction_use;
   builder.add_channel("mode", "", {"what it does", "", "0 loose, 1 sticks, 2 slides"},
                       [unit = group.entries[static_cast<std::size_t>(i)].unit](const Snapshot& s) {
                         const UnitMode mode = s.evaluation->mode[unit];

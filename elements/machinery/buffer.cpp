@@ -167,7 +167,7 @@ void compile_buffer(const Element& element, SystemBuilder& builder) {
   row.direction = measure.axis;
   row.quantity = "slide";
   row.element = builder.element_index();
-  row.memory = builder.add_memory();
+  row.base = builder.add_base();
   friction->bound = table(depths, [&](double d) { return 0.5 * n * (curves.pressed_in(d) - curves.let_go(d)); });
   friction->free = free;
   friction->unit = unit;

@@ -111,8 +111,8 @@ void compile_freewheel(const Element& element, SystemBuilder& builder) {
   row.point_b = b.point;
   row.quantity = "angle";
   row.element = builder.element_index();
-  row.memory = builder.add_memory();
-  clutch->blow = builder.add_memory();
+  row.base = builder.add_base();
+  clutch->impact = builder.add_impacts();
   const int f = builder.next_friction(), slot = builder.next_friction_row();
   const OneWayClutch* const self = clutch.get();
   builder.add_channel("couple", "N m", {"with which b takes a along, or drags on it", "positive: counter-clockwise on a"},
@@ -122,7 +122,7 @@ void compile_freewheel(const Element& element, SystemBuilder& builder) {
   builder.add_channel("mode", "", {"what it does", "", "1 locked, 2 free or slipping"},
                       [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
   builder.add_channel("impulse", "N m s", {"of the last blow that locked it, zero before the first", "never negative"},
-                      [blow = clutch->blow](const Snapshot& s) { return s.memory[blow]; });
+                      [impact = clutch->impact](const Snapshot& s) { return s.impacts[impact].impulse; });
   builder.add_friction(std::move(clutch));
 }
 

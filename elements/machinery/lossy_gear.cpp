@@ -160,7 +160,7 @@ void compile_lossy_gear(const Element& element, SystemBuilder& builder) {
   row.b = carrier.body;
   row.quantity = "angle";
   row.element = builder.element_index();
-  row.memory = builder.add_memory();
+  row.base = builder.add_base();
   const int f = builder.next_friction(), slot = builder.next_friction_row();
   builder.add_channel("twist", "rad", {"by which its teeth give, at shaft a", "positive: a is ahead"},
                       [mesh = added](const Snapshot& s) { return mesh.twist(s.motion); });

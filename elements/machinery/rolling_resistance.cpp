@@ -59,7 +59,7 @@ void compile_rolling_resistance(const Element& element, SystemBuilder& builder) 
   row.b = builder.marker(ends->second).body;
   row.quantity = "angle";
   row.element = builder.element_index();
-  row.memory = builder.add_memory();
+  row.base = builder.add_base();
   auto friction = std::make_unique<RollingFriction>();
   friction->is_tyre = dynamic_cast<const Tyre*>(entry->element.get()) != nullptr;
   friction->contacts = {*contact};

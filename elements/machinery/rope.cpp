@@ -280,9 +280,9 @@ void add_inextensible(const RopeGroup::ElementData& entry, double now, double le
   rope->rest_tension = k_least_acceleration * lightest_mass(entry.parts, builder);
   rope->set_parts(rows_of(entry.parts, builder));
   for (const RopePart& part : entry.parts) rope->points.emplace_back(part.name_a, part.name_b);
-  rope->row.memory = builder.add_memory(rope->length);
-  rope->blow = builder.add_memory();
-  const int force = builder.next_friction_row(), f = builder.next_friction(), blow = rope->blow;
+  rope->row.base = builder.add_base(rope->length);
+  rope->impact = builder.add_impacts();
+  const int force = builder.next_friction_row(), f = builder.next_friction(), impact = rope->impact;
   const OneSidedRow* const self = rope.get();
   builder.add_channel("length", "m", "length of the way over its points",
                       [self, fixed = entry.fixed_length](const Snapshot& s) { return fixed + self->measured(s.motion).value; });
@@ -292,7 +292,7 @@ void add_inextensible(const RopeGroup::ElementData& entry, double now, double le
     return s.evaluation->friction[f].phase == FrictionPhase::stick ? -s.friction_force[force] : 0.0;
   });
   builder.add_channel("impulse", "N s", {"of the last blow that it took, zero before the first", "positive: it pulled"},
-                      [blow](const Snapshot& s) { return s.memory[blow]; });
+                      [impact](const Snapshot& s) { return s.impacts[impact].impulse; });
   builder.add_friction(std::move(rope));
 }
 
@@ -346,6 +346,7 @@ const ElementKind& rope_kind() {
     using T = Rope;
     ElementKind k;
     k.name = "rope";
+    k.goes_slack = true;
     k.doc = "A rope from marker a over any number of points to marker b: it pulls, it never pushes. The tension is the same "
             "all along; a point that it runs over is a pulley without size or friction. A lashing is a rope with a pretension. With "
             "`across` it leads out of the plane, and the part of its force in the plane acts.";

@@ -82,7 +82,7 @@ void add_held(RowSpec row, SystemBuilder& builder) {
 }
 
 void add_gripping(RowSpec row, double grip, double drags, SystemBuilder& builder) {
-  row.memory = builder.add_memory();
+  row.base = builder.add_base();
   auto friction = std::make_unique<SidewaysGrip>();
   friction->row = row;
   friction->grip = grip;

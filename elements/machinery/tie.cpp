@@ -209,9 +209,10 @@ template <class Measure> void add(const Tie& e, SystemBuilder& builder, int a, i
   builder.add_channel("force", "N", {"force of all of them together", "positive: tension"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
   if (!e.strength) return;
-  builder.add_channel(
-      "strength_share", "", {"size of its force, of its strength; breaks at 1", "never negative"},
-      [&group, i](const Snapshot& s) { return std::abs(group.force_of(i, *s.evaluation)) / group.entries[i].law.strength; });
+  builder
+      .add_channel("strength_share", "", {"size of its force, of its strength; breaks at 1", "never negative"},
+                   [&group, i](const Snapshot& s) { return std::abs(group.force_of(i, *s.evaluation)) / group.entries[i].law.strength; })
+      .role = ChannelRole::strength_use;
   builder.add_channel("mode", "", {"whether it holds", "", "1 whole, 0 broken"},
                       [&group, i](const Snapshot& s) { return s.evaluation->mode[group.entries[i].unit] == k_broken ? 0.0 : 1.0; });
 }

@@ -56,10 +56,10 @@ void add_channels(const TyreGroup& group, int i, SystemBuilder& builder) {
     const auto tread = group.tread_state(i, *s.evaluation);
     return tread.most > 0.0 ? std::min(1.0, std::abs(tread.force) / tread.most) : 0.0;
   };
-  builder.add_channel("share", "", {"force of the tread over the largest at the same instant; 1 where it slides", "never negative"}, share)
-      .bounds = [share](const Snapshot& s) {
-    return ValueBounds{0.0, share(s)};
-  };
+  Channel& channel = builder.add_channel(
+      "share", "", {"force of the tread over the largest at the same instant; 1 where it slides", "never negative"}, share);
+  channel.role = ChannelRole::friction_use;
+  channel.bounds = [share](const Snapshot& s) { return ValueBounds{0.0, share(s)}; };
   builder.add_channel("slip_rate", "m/s", {"velocity of the tread's ground against the road", "positive: along the road's x"},
                       [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).slip_rate; });
   builder.add_channel("bent", "m", {"mean deflection of the bristles", "positive: the tread is ahead along the road's x"},

@@ -155,6 +155,7 @@ const ElementKind& wound_rope_kind() {
     using T = WoundRope;
     ElementKind k;
     k.name = "wound_rope";
+    k.goes_slack = true;
     k.doc = "A rope between two wheels on which its ends are wound, or from a wheel to a point: a hoist's drum, one "
             "side of a belt or "
             "a chain, a rope over a heavy pulley. It pulls, it never pushes, and it does not slip on its wheels.";

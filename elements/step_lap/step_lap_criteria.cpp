@@ -133,6 +133,8 @@ ElementJudgement judge_step_lap_joint(const Element& element, const Model& model
   return judgement;
 }
 
-std::vector<std::string> trust_of_step_lap_joint(const Element& element) { return {element.name + ".margin", element.name + ".mode"}; }
+std::vector<TrustChannel> trust_of_step_lap_joint(const Element& element) {
+  return {{element.name + ".margin", true}, {element.name + ".mode"}};
+}
 
 } // namespace steplap

@@ -104,14 +104,14 @@ Pose StepLapFriction::pose_of(const Motion<double>* motion) const {
 }
 
 // While the joint sticks, the anchors of its rows are its pose, without rounding of positions.
-Pose StepLapFriction::anchor(const double* memory) const {
-  return {memory[hold[0].memory], memory[hold[1].memory], memory[hold[2].memory]};
+Pose StepLapFriction::anchor(const RowBase* bases) const {
+  return {bases[hold[0].base].value, bases[hold[1].base].value, bases[hold[2].base].value};
 }
 
 Pose StepLapFriction::present(const Snapshot& s) const {
   if (is_elastic()) return slid_pose(s);
   const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick;
-  return is_stuck ? anchor(s.memory) : pose_of(s.motion);
+  return is_stuck ? anchor(s.evaluation->bases) : pose_of(s.motion);
 }
 
 void StepLapFriction::build(const Pose& pose, GripLaw law, double tilt, OverlapWorkspace& workspace, Region& region, Patch& patch) const {
@@ -210,7 +210,7 @@ RequiredPressure StepLapFriction::required(const Patch& patch, const Vec3& wrenc
 
 void StepLapFriction::stick_events(const Evaluation& e, const FrictionState&, const double* wrench, double* event_value) const {
   event_value[0] = event_value[1] = 1.0;
-  if (!never_slips()) event_value[0] = spare(e, anchor(e.memory), Vec3(wrench[0], wrench[1], wrench[2]));
+  if (!never_slips()) event_value[0] = spare(e, anchor(e.bases), Vec3(wrench[0], wrench[1], wrench[2]));
 }
 
 double StepLapFriction::spare(const Evaluation& e, const Pose& slid, const Vec3& wrench) const {
@@ -235,14 +235,14 @@ double StepLapFriction::yield_usage(const Evaluation& e, const Pose& slid, const
 
 double StepLapFriction::support(const Evaluation& e, const FrictionState&, const double* rate) const {
   const PressureState now = pressure_at(e.t);
-  Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding, now.tilt);
+  Fit& f = fit(e.scratch, anchor(e.bases), GripLaw::holding, now.tilt);
   return now.factor * evaluate_gradient(f.tabulated(), Vec3(rate[0], rate[1], rate[2])).h;
 }
 
 // u = W·ν/h(ν) at the maximiser ν; its gradient by W is ν/h.
 double StepLapFriction::gauge(const Evaluation& e, const FrictionState&, const double* wrench, double* normal) const {
   const PressureState now = pressure_at(e.t);
-  const Patch& patch = fit(e.scratch, anchor(e.memory), GripLaw::holding, now.tilt).tabulated();
+  const Patch& patch = fit(e.scratch, anchor(e.bases), GripLaw::holding, now.tilt).tabulated();
   const RequiredPressure need = required(patch, Vec3(wrench[0], wrench[1], wrench[2]) / now.factor, e.t);
   Vec3 n = need.direction;
   if (need.u > 0.0) n /= now.factor * evaluate_gradient(patch, n).h;
@@ -305,7 +305,7 @@ BlockSolution StepLapFriction::solve_block(const Evaluation& e, const FrictionSt
                                            bool is_kinetic) const {
   const GripLaw law = is_kinetic ? GripLaw::sliding : GripLaw::holding;
   const PressureState now = pressure_at(e.t);
-  Fit& f = fit(e.scratch, anchor(e.memory), law, now.tilt);
+  Fit& f = fit(e.scratch, anchor(e.bases), law, now.tilt);
   // Wrenches in units of the factor f: ½ f² wᵀA w + f bᵀw over the admissible set for factor 1.
   const Mat3 mobility = now.factor * Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(a);
   const AdmissibleWrench w = admissible_wrench(f.tabulated(), 0.5 * (mobility + mobility.transpose()), Vec3(b[0], b[1], b[2]));

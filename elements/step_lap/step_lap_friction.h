@@ -167,7 +167,7 @@ public:
   void slip_events(const Evaluation& e, const FrictionState& state, const double* rate, double* event_value) const override;
   [[nodiscard]] SlipScale slip_scale(const Evaluation& e, const FrictionState& state, const double* rate) const override;
   [[nodiscard]] double max_damping_rate(const Evaluation& e, const FrictionState& state, const double* rate) const override;
-  [[nodiscard]] bool continue_slip(const Evaluation& e, FrictionState& state, const double* rate, int slot) const override;
+  [[nodiscard]] bool continue_slip(const Evaluation& e, FrictionState& state, const double* rate, FrictionWatch fired) const override;
   [[nodiscard]] double contact_point_event(const Evaluation& e, const FrictionState& state) const override;
   void switch_contact_point(const Evaluation& e, FrictionState& state) const override;
   [[nodiscard]] EventKind contact_switch_event(const FrictionState& from, const FrictionState& to) const override {
@@ -181,7 +181,7 @@ private:
   struct Fit;
   struct Scratch;
   [[nodiscard]] Fit& fit(FrictionScratch* const* scratch, const Pose& pose, GripLaw law, double tilt) const;
-  [[nodiscard]] Pose anchor(const double* memory) const;
+  [[nodiscard]] Pose anchor(const RowBase* bases) const;
   [[nodiscard]] Pose present(const Snapshot& s) const;
   void build(const Pose& pose, GripLaw law, double tilt, OverlapWorkspace& workspace, Region& region, Patch& patch) const;
   void add_pressed(const SheetPair& sheets, const Region& region, GripLaw law, double tilt, Patch& patch) const;

@@ -73,10 +73,10 @@ void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction,
   if (self->has_changing_pressure())
     builder.add_channel("pressure", "Pa", "clamping pressure that the first interface has now, at the middle of its overlap",
                         [pressure_at](const Snapshot& s) { return pressure_at(s.t); });
-  builder
-      .add_channel("margin", "", "capacity over what is in use, 1/u; infinite without load",
-                   [self](const Snapshot& s) { return self->usage(s).margin(); })
-      .bounds = [self](const Snapshot& s) {
+  Channel& margin = builder.add_channel("margin", "", "capacity over what is in use, 1/u; infinite without load",
+                                        [self](const Snapshot& s) { return self->usage(s).margin(); });
+  margin.role = ChannelRole::margin;
+  margin.bounds = [self](const Snapshot& s) {
     const ValueBounds u = self->usage_between(s);
     return ValueBounds{1.0 / u.high, 1.0 / u.low};
   };
@@ -163,7 +163,7 @@ void add_rows(const StepLapJoint& e, SystemBuilder& builder, StepLapFriction& fr
     if (r < 2) row.direction = directions[r];
     row.quantity = "joint";
     row.element = builder.element_index();
-    row.memory = builder.add_memory(evaluate_row<false>(row, &builder.reference(0)).value);
+    row.base = builder.add_base(evaluate_row<false>(row, &builder.reference(0)).value);
   }
 }
 

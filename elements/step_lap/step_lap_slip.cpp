@@ -84,7 +84,7 @@ double StepLapFriction::end_speed(const Evaluation& e) const {
 }
 
 void StepLapFriction::set_onset_direction(const Evaluation& e, FrictionState& state, const double* wrench) const {
-  Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding, pressure_at(e.t).tilt);
+  Fit& f = fit(e.scratch, anchor(e.bases), GripLaw::holding, pressure_at(e.t).tilt);
   state.onset_stage = 0;
   set_direction(state, -required(f.tabulated(), Vec3(wrench[0], wrench[1], wrench[2]), e.t).direction);
 }
@@ -166,7 +166,7 @@ double StepLapFriction::max_damping_rate(const Evaluation& e, const FrictionStat
          part_mobility_[1] * turned.dot(curvature * turned);
 }
 
-bool StepLapFriction::continue_slip(const Evaluation& e, FrictionState& state, const double* rate, int slot) const {
+bool StepLapFriction::continue_slip(const Evaluation& e, FrictionState& state, const double* rate, FrictionWatch fired) const {
   const Vec3 y = scaled(Vec3(rate[0], rate[1], rate[2]));
   const double along = y.dot(scaled(Vec3(state.direction[0], state.direction[1], state.direction[2])));
   const double speed = y.norm(), end = end_speed(e);
@@ -179,13 +179,13 @@ bool StepLapFriction::continue_slip(const Evaluation& e, FrictionState& state, c
     return false;
   };
   if (state.is_onset) {
-    if (slot == 1) return rests();
+    if (fired == FrictionWatch::second) return rests();
     if (!is_moving(state)) return goes_on(k_moving_stage);
   } else if (is_ending(state)) {
     if (along <= 0.0) return rests();
     if (speed <= k_no_end * end) return true;
-  } else if (slot == 0 || speed < end) {
-    if (slot == 0) aim(state, rate);
+  } else if (fired == FrictionWatch::first || speed < end) {
+    if (fired == FrictionWatch::first) aim(state, rate);
     else if (along <= 0.0) return rests(); // passed through ν = 0 within a step, along a line
     return goes_on(k_ending_stage);
   }

@@ -69,7 +69,7 @@ STEPLAP_INLINE void ConstraintSolution::solve_multipliers(Mechanism& m, double* 
 // Adds the prescribed accelerations of driven rows to γ, and stores their prescribed rates.
 STEPLAP_INLINE void ConstraintSolution::drive(double t) {
   for (const int r : layout_->driven_rows) {
-    const SignalJet target = row_target(*layout_->active[r].spec, state_->memory.data(), t);
+    const SignalJet target = row_target(*layout_->active[r].spec, state_->bases.data(), t);
     multiplier_[r] += target.acceleration;
     target_rate_[r] = target.rate;
   }
@@ -97,7 +97,7 @@ void ConstraintSolution::solve(double t, const BodyForce* force, double* a) {
 // --- projection ---------------------------------------------------------------------------------------
 
 STEPLAP_INLINE void ConstraintSolution::compare_row(std::size_t r, double t) {
-  const SignalJet target = row_target(*layout_->active[r].spec, state_->memory.data(), t);
+  const SignalJet target = row_target(*layout_->active[r].spec, state_->bases.data(), t);
   const MeasureValue<double> m = load_row<false>(*layout_, layout_->active[r], motion_, layout_->schur_rows[r]);
   off_[r] = off_target(*layout_->active[r].spec, m.value, target.value);
   rate_off_[r] = m.rate - target.rate;

@@ -34,7 +34,7 @@ void Dynamics::set_state(const State& state) {
   state_ = &state;
   evaluation_.mode = state.mode.data();
   evaluation_.friction = state.friction.data();
-  evaluation_.memory = state.memory.data();
+  evaluation_.bases = state.bases.data();
   is_merged_near_ = was_merged_near_ = false;
   pending_.end();
   stage_programs_.leave();
@@ -136,7 +136,7 @@ void Dynamics::finish_events() {
   const LoadSharing* const shared = sharing(); // event functions of elements that share a load are evaluated at the ends of steps
   const auto contact_point_event = [this](int f) {
     const FrictionUnit& unit = system_.frictions[f];
-    arrays_.event_value[unit.first_event + 2] = unit.friction->contact_point_event(evaluation_, state_->friction[f]);
+    arrays_.event_value[unit.slot(FrictionWatch::contact_point)] = unit.friction->contact_point_event(evaluation_, state_->friction[f]);
   };
   const auto event_value = [&](int f) {
     const FrictionUnit& unit = system_.frictions[f];
@@ -219,9 +219,9 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
 }
 
 // Not inlined: few scenes have driven rows.
-[[gnu::noinline]] static void take_row_inputs(const Layout& layout, const double* memory, double t, double* into) {
+[[gnu::noinline]] static void take_row_inputs(const Layout& layout, const RowBase* bases, double t, double* into) {
   for (const int r : layout.driven_rows) {
-    const SignalJet target = row_target(*layout.active[r].spec, memory, t);
+    const SignalJet target = row_target(*layout.active[r].spec, bases, t);
     *into++ = target.acceleration;
     *into++ = target.rate;
   }
@@ -234,7 +234,7 @@ void Dynamics::take_time_inputs(double t, double* into) {
     *into++ = target.rate;
     *into++ = target.acceleration;
   }
-  if (!layout_->driven_rows.empty()) take_row_inputs(*layout_, state_->memory.data(), t, into);
+  if (!layout_->driven_rows.empty()) take_row_inputs(*layout_, state_->bases.data(), t, into);
 }
 
 // Computes rates, powers and event functions by machine code; with `all` also the data for evaluate_joint_events_by_code() and
@@ -405,7 +405,7 @@ Snapshot Dynamics::snapshot(const double* dy) {
   s.evaluation = &evaluation_;
   s.row_force = reactions_.row_force().data();
   s.friction_force = friction_force_;
-  s.memory = state_->memory.data();
+  s.impacts = state_->impacts.data();
   s.dissipated = energy_integrals_[0];
   s.work = energy_integrals_[1];
   s.integrals = integrals_;

@@ -169,7 +169,7 @@ void ElementCall::run(const double* arguments, double* results) {
 void ElementCall::evaluate_element() {
   own_.mode = live_.mode;
   own_.friction = live_.friction;
-  own_.memory = live_.memory;
+  own_.bases = live_.bases;
   own_.scratch = live_.scratch;
   own_.averaging_start = live_.averaging_start;
   if (group_) return group_->add_forces(own_);

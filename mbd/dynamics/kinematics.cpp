@@ -19,10 +19,10 @@ void Kinematics::use(Layout& layout, const State& state) {
 void Kinematics::aim_locks(double t) {
   if (t == lock_time_) return;
   lock_time_ = t;
-  const double* const memory = state_->memory.data();
+  const RowBase* const bases = state_->bases.data();
   SignalJet* target = lock_target_.data();
   for (const Lock& lock : layout_->locks) {
-    *target = row_target(system_.rows[lock.row], memory, t);
+    *target = row_target(system_.rows[lock.row], bases, t);
     target->value += lock.offset;
     ++target;
   }

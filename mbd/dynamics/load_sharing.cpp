@@ -309,7 +309,7 @@ struct Discord {
 void add_row(const System& system, const RowSpec& spec, double n, bool is_led, const Evaluation& e, const double* acceleration,
              Discord& sum) {
   const auto m = evaluate_row<true>(spec, e.motion);
-  const SignalJet target = row_target(spec, e.memory, e.t);
+  const SignalJet target = row_target(spec, e.bases, e.t);
   double along = m.bias - target.acceleration, terms = std::abs(m.bias) + std::abs(target.acceleration);
   double rate_terms = std::abs(m.rate) + std::abs(target.rate), moved = 0.0;
   for (const RowSpec* piece = &spec; piece; piece = piece->next) {

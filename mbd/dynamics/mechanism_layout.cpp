@@ -39,14 +39,14 @@ private:
 bool is_pin(const System& system, const RowBlock& block) {
   if (block.count != 2) return false;
   const RowSpec &x = system.rows[block.first], &y = system.rows[block.first + 1];
-  const bool are_fixed = !x.drive && !y.drive && x.memory < 0 && y.memory < 0;
+  const bool are_fixed = !x.drive && !y.drive && x.base < 0 && y.base < 0;
   return are_fixed && x.kind == MeasureKind::axis && y.kind == MeasureKind::axis && x.a == y.a && x.b == y.b && x.point_a == y.point_a &&
          x.point_b == y.point_b && std::abs(x.direction.x() * y.direction.y() - x.direction.y() * y.direction.x()) > 0.5;
 }
 
 bool is_rod(const System& system, const RowBlock& block) {
   const RowSpec& row = system.rows[block.first];
-  return block.count == 1 && row.kind == MeasureKind::distance && !row.drive && row.memory >= 0;
+  return block.count == 1 && row.kind == MeasureKind::distance && !row.drive && row.base >= 0;
 }
 
 class Finder {
@@ -102,7 +102,7 @@ private:
   void add_hinge(int block, const RowSpec& row) {
     Hinge hinge;
     hinge.block = block;
-    if (row.kind == MeasureKind::distance) hinge.length = state_.memory[row.memory];
+    if (row.kind == MeasureKind::distance) hinge.length = state_.bases[row.base].value;
     const int body[2] = {row.a, row.b};
     for (int side = 0; side < 2; ++side) {
       hinge.cluster[side] = cluster_of(body[side]);

@@ -51,8 +51,8 @@ bool Dynamics::evaluate_group_events() {
     const double margin = 1.0 + k_bound_slack - group.least.usage();
     const double concord = 1.0 - layout_->sharing->discord(static_cast<int>(g), evaluation_, reactions_.acceleration().data());
     for (const int f : group.frictions) {
-      arrays_.event_value[system_.frictions[f].first_event] = margin;
-      arrays_.event_value[system_.frictions[f].first_event + 1] = concord;
+      arrays_.event_value[system_.frictions[f].slot(FrictionWatch::first)] = margin;
+      arrays_.event_value[system_.frictions[f].slot(FrictionWatch::second)] = concord;
     }
     if (concord < k_near_limit) is_near = true;
     if (margin < k_near_limit) is_near = true;

@@ -6,13 +6,13 @@
 
 namespace steplap {
 
-/// Anchors the rows of friction element f at the pose of `motion`; each row has its own memory slot.
+/// Anchors the rows of friction element f at the pose of `motion`; each row has its own base.
 inline void anchor_friction(const System& system, State& state, int f, const Motion<double>* motion) {
   const FrictionElement& friction = *system.frictions[f].friction;
   if (one_sided_row(friction)) return; // a rope is held at its length, whatever the pose
   const RowSpec* const rows = friction.rows(state.friction[f]);
   for (int r = 0; r < friction.dimension(); ++r)
-    if (rows[r].memory >= 0) state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion).value;
+    if (rows[r].base >= 0) state.bases[rows[r].base].value = evaluate_row<false>(rows[r], motion).value;
 }
 
 } // namespace steplap

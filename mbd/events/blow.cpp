@@ -117,14 +117,15 @@ bool is_any_driven(const System& system) {
 // Locks a clutch that took an impulse, at its present angle, and records the impulse.
 void note_lock(const OneWayLock& lock, int f, double impulse, double rate, State& state, State& after) {
   if (!(std::abs(impulse) > 0.0)) return;
-  state.memory[lock.blow] = std::abs(impulse);
-  state.memory[lock.blow + 1] -= 0.5 * impulse * rate;
+  Impact& impact = state.impacts[lock.impact];
+  impact.impulse = std::abs(impulse);
+  impact.lost -= 0.5 * impulse * rate;
   FrictionState& friction = after.friction[static_cast<std::size_t>(f)];
   friction.phase = FrictionPhase::stick;
   std::vector<Motion<double>> motion;
   place_bodies(after.q, after.v, motion);
   const RowSpec& row = *lock.rows(friction);
-  after.memory[row.memory] = evaluate_row<false>(row, motion.data()).value;
+  after.bases[row.base].value = evaluate_row<false>(row, motion.data()).value;
 }
 
 // Throws if joints and drives turn a clutch against its lock, which no impulse can prevent.
@@ -169,7 +170,7 @@ bool set_ropes(const System& system, State& state) {
   bool is_any_pulled = false;
   for (const auto& [rope, f] : one_sided_rows(system)) {
     FrictionState& friction = state.friction[f];
-    state.memory[rope->blow] = state.memory[rope->blow + 1] = 0.0;
+    state.impacts[rope->impact] = {};
     const auto m = rope->measured(motion.data());
     if (m.value > rope->length * (1.0 + OneSidedRow::k_too_long)) {
       const std::string& name = system.element_names[rope->row.element];
@@ -219,8 +220,9 @@ void take_blow(const System& system, Dynamics& dynamics, State& state) {
     friction.sign = 0;
     const double impulse = -solution.w[at];
     if (!(impulse > 0.0)) continue;
-    state.memory[rope.blow] = impulse;
-    state.memory[rope.blow + 1] += 0.5 * impulse * std::max(struck.rate[i], 0.0);
+    Impact& impact = state.impacts[rope.impact];
+    impact.impulse = impulse;
+    impact.lost += 0.5 * impulse * std::max(struck.rate[i], 0.0);
   }
   meet(dynamics, after);
   check_locks(system, after);
@@ -237,17 +239,17 @@ void close_rows(const System& system, Dynamics& dynamics, State& state) {
   book_blow(system, true, after, state);
 }
 
-bool was_struck(const System& system, std::size_t f, const std::vector<double>& before, const State& state) {
-  const int blow = blow_slot(*system.frictions[f].friction);
-  return blow >= 0 && before[blow + 1] != state.memory[blow + 1];
+bool was_struck(const System& system, std::size_t f, const std::vector<Impact>& before, const State& state) {
+  const int impact = impact_index(*system.frictions[f].friction);
+  return impact >= 0 && before[impact].lost != state.impacts[impact].lost;
 }
 
-std::string blow_text(const System& system, std::size_t f, const std::vector<double>& before, const State& state) {
+std::string blow_text(const System& system, std::size_t f, const std::vector<Impact>& before, const State& state) {
   if (!was_struck(system, f, before, state)) return {};
   const FrictionElement& friction = *system.frictions[f].friction;
-  const int blow = blow_slot(friction);
-  return "with " + rounded_text(state.memory[blow], 4) + (one_sided_row(friction) ? " N s, " : " N m s, ") +
-         rounded_text(state.memory[blow + 1] - before[blow + 1], 4) + " J lost";
+  const int impact = impact_index(friction);
+  return "with " + rounded_text(state.impacts[impact].impulse, 4) + (one_sided_row(friction) ? " N s, " : " N m s, ") +
+         rounded_text(state.impacts[impact].lost - before[impact].lost, 4) + " J lost";
 }
 
 } // namespace steplap

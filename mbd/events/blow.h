@@ -24,7 +24,7 @@ namespace steplap {
 /// lengthens, which requires take_blow(). Throws ElementFailure if the ends of a rope are further apart than its length.
 [[nodiscard]] bool set_ropes(const System& system, State& state);
 
-/// Applies the impact. Changes velocities, phases of ropes, memories, dissipated energy and work. Phases of friction and clutches stay
+/// Applies the impact. Changes velocities, phases of ropes, impacts, dissipated energy and work. Phases of friction and clutches stay
 /// unchanged; the caller decides them from the new velocities. Throws ElementFailure if the impulses cannot be determined or drives turn a
 /// clutch against its lock.
 void take_blow(const System& system, Dynamics& dynamics, State& state);
@@ -37,8 +37,8 @@ void take_blow(const System& system, Dynamics& dynamics, State& state);
 /// afterwards. The energy ½ Δvᵀ M Δv is dissipated; the rest of the change of energy is work of moving drives.
 void close_rows(const System& system, Dynamics& dynamics, State& state);
 
-/// Impact of a rope or clutch since the memory was `before`: was there one, and its impulse and energy loss as text (empty if none).
-[[nodiscard]] bool was_struck(const System& system, std::size_t friction, const std::vector<double>& before, const State& state);
-[[nodiscard]] std::string blow_text(const System& system, std::size_t friction, const std::vector<double>& before, const State& state);
+/// Impact of a rope or clutch since the impacts were `before`: was there one, and its impulse and energy loss as text (empty if none).
+[[nodiscard]] bool was_struck(const System& system, std::size_t friction, const std::vector<Impact>& before, const State& state);
+[[nodiscard]] std::string blow_text(const System& system, std::size_t friction, const std::vector<Impact>& before, const State& state);
 
 } // namespace steplap

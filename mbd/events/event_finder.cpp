@@ -118,7 +118,7 @@ void EventFinder::set_tolerance(const Integrator& integrator, const Dynamics& dy
   for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
     const FrictionUnit& unit = system_.frictions[f];
     const bool is_rate = unit.friction->dimension() == 1 && dynamics.state().friction[f].phase == FrictionPhase::slip;
-    tolerance_[unit.first_event] = is_rate ? slack : 0.0;
+    tolerance_[unit.slot(FrictionWatch::first)] = is_rate ? slack : 0.0;
   }
   for (const int slot : rate_slots_) tolerance_[slot] = slack + k_off_joints * integrator.max_velocity_residual();
   if (place_slots_.empty()) return;
@@ -130,9 +130,9 @@ void EventFinder::set_tolerance(const Integrator& integrator, const Dynamics& dy
 bool EventFinder::is_any_merged_near(const Integrator& integrator, const Dynamics& dynamics) const {
   const std::vector<int>& merged = dynamics.layout().merged;
   return std::any_of(merged.begin(), merged.end(), [&](int f) {
-    const int first = system_.frictions[f].first_event;
+    const int first = system_.frictions[f].slot(FrictionWatch::first), second = system_.frictions[f].slot(FrictionWatch::second);
     const auto is_of_joint = [first](int slot) { return slot >= first && slot < first + k_friction_event_count; };
-    return integrator.event_value1()[first] < 0.0 || integrator.event_value1()[first + 1] < 0.0 ||
+    return integrator.event_value1()[first] < 0.0 || integrator.event_value1()[second] < 0.0 ||
            std::any_of(surveyed_slots_.begin(), surveyed_slots_.end(), is_of_joint);
   });
 }

@@ -90,7 +90,7 @@ void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& mode
 
 // In one dimension the two event functions are bound − λ and bound + λ, so the share is |λ|/bound; in three the first one is 1 − u.
 double share_of_bound(const FrictionUnit& unit, const std::vector<double>& event_value) {
-  const double one = event_value[unit.first_event], other = event_value[unit.first_event + 1];
+  const double one = event_value[unit.slot(FrictionWatch::first)], other = event_value[unit.slot(FrictionWatch::second)];
   return unit.friction->dimension() == 1 ? 1.0 - 2.0 * std::min(one, other) / (one + other) : 1.0 - one;
 }
 
@@ -168,7 +168,7 @@ void EventHandler::start(State& state) {
   const bool is_any_tight = set_ropes(system_, state);
   if (is_any_tight || turns_against_lock(system_, state)) {
     take_blow(system_, dynamics_, state);
-    note_blows(system_.initial_memory, state);
+    note_blows(system_.initial_impacts, state);
     modes_.evaluate(state);
     begin_units(state); // the impact changes velocities, on which modes of dampers and formulas depend
   }
@@ -222,13 +222,13 @@ void EventHandler::list_unit_change(int u, UnitMode from, UnitMode to, double t,
     events.push_back({t, system_.element_names[unit.element], slide});
 }
 
-void EventHandler::fire_friction(State& state, int f, int slot) {
+void EventHandler::fire_friction(State& state, int f, FrictionWatch fired) {
   const FrictionUnit& unit = system_.frictions[f];
   FrictionState& friction = state.friction[f];
   if (one_sided_row(*unit.friction)) { // The rope becomes slack. Ropes that become taut are handled by an impact.
     friction.phase = FrictionPhase::slip;
     friction.sign = 0;
-  } else if (slot == unit.first_event + 2) {
+  } else if (fired == FrictionWatch::contact_point) {
     if (friction.phase == FrictionPhase::slip) modes_.end_slip(state, f);
     const FrictionState from = friction;
     unit.friction->switch_contact_point(dynamics_.evaluation(), friction);
@@ -242,7 +242,7 @@ void EventHandler::fire_friction(State& state, int f, int slot) {
   } else if (friction.phase == FrictionPhase::slip) {
     double rate[3];
     slip_rates(state, f, rate);
-    if (unit.friction->continue_slip(dynamics_.evaluation(), friction, rate, slot - unit.first_event)) return;
+    if (unit.friction->continue_slip(dynamics_.evaluation(), friction, rate, fired)) return;
     modes_.end_slip(state, f);
     friction.phase = FrictionPhase::stick; // or it reverses: the mode problem decides
     if (unit.friction->dimension() == 1) modes_.note_rest(f, rate[0]);
@@ -318,22 +318,22 @@ void EventHandler::note_start(const State& state, std::vector<Event>& events) co
     if (state.friction[f].phase == FrictionPhase::slip && has_capacity(state, f))
       events.push_back({state.t, system_.element_names[system_.frictions[f].element], slip_kind(f, {}, state.friction[f])});
   for (std::size_t f = 0; f < state.friction.size(); ++f)
-    if (was_struck(system_, f, system_.initial_memory, state))
+    if (was_struck(system_, f, system_.initial_impacts, state))
       events.push_back({state.t, system_.element_names[system_.frictions[f].element],
                         one_sided_row(*system_.frictions[f].friction) ? EventKind::closes_gap : EventKind::sticks,
-                        blow_text(system_, f, system_.initial_memory, state)});
+                        blow_text(system_, f, system_.initial_impacts, state)});
 }
 
 namespace {
 
 // Adds the events of a rope: it became taut, slack, or taut and slack again at once.
-void note_rope(const System& system, const OneSidedUnit& unit, FrictionPhase phase_before, const std::vector<double>& memory_before,
+void note_rope(const System& system, const OneSidedUnit& unit, FrictionPhase phase_before, const std::vector<Impact>& impacts_before,
                const State& state, std::vector<Event>& events) {
   const OneSidedRow& rope = *unit.row;
   const std::string& name = system.element_names[rope.row.element];
   const bool was_taut = phase_before == FrictionPhase::stick, is_taut = state.friction[unit.friction].phase == FrictionPhase::stick;
-  const bool is_caught = !was_taut && (is_taut || was_struck(system, unit.friction, memory_before, state));
-  if (is_caught) events.push_back({state.t, name, EventKind::closes_gap, blow_text(system, unit.friction, memory_before, state)});
+  const bool is_caught = !was_taut && (is_taut || was_struck(system, unit.friction, impacts_before, state));
+  if (is_caught) events.push_back({state.t, name, EventKind::closes_gap, blow_text(system, unit.friction, impacts_before, state)});
   if ((was_taut || is_caught) && !is_taut) events.push_back({state.t, name, EventKind::enters_gap});
 }
 
@@ -358,7 +358,7 @@ void evaluate_separated_joint_events(const System& system, const State& state, s
   e.t = state.t;
   e.mode = state.mode.data();
   e.friction = state.friction.data();
-  e.memory = state.memory.data();
+  e.bases = state.bases.data();
   e.inner = state.inner.data();
   for (const auto& group : system.groups) group->add_forces(e);
   for (const Unit& unit : system.units)
@@ -368,7 +368,7 @@ void evaluate_separated_joint_events(const System& system, const State& state, s
 } // namespace
 
 // Adds events for changes of friction element f. Returns true if anything changed except a rope's tension.
-bool EventHandler::list_friction_change(std::size_t f, const FrictionState& old, const std::vector<double>& memory_before,
+bool EventHandler::list_friction_change(std::size_t f, const FrictionState& old, const std::vector<Impact>& impacts_before,
                                         const State& state, std::vector<Event>& events) {
   const FrictionState& now = state.friction[f];
   const bool is_same_slip = now.phase != FrictionPhase::slip || is_same_direction(f, old, now);
@@ -386,23 +386,23 @@ bool EventHandler::list_friction_change(std::size_t f, const FrictionState& old,
   case FrictionPhase::slip: kind = slip_kind(f, old, now); break;
   case FrictionPhase::apart: kind = EventKind::comes_apart; break;
   }
-  events.push_back({state.t, name, kind, kind == EventKind::sticks ? blow_text(system_, f, memory_before, state) : std::string()});
+  events.push_back({state.t, name, kind, kind == EventKind::sticks ? blow_text(system_, f, impacts_before, state) : std::string()});
   if (now.phase == FrictionPhase::apart && unit.friction->stops_when_apart()) stop_reason_ = "'" + name + "' came apart";
   return true;
 }
 
-void EventHandler::note_friction(const std::vector<FrictionState>& before, const std::vector<double>& memory_before, const State& state,
+void EventHandler::note_friction(const std::vector<FrictionState>& before, const std::vector<Impact>& impacts_before, const State& state,
                                  std::vector<Event>& events) {
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
     const FrictionState &old = before[f], &now = state.friction[f];
     const FrictionUnit& unit = system_.frictions[f];
     if (const OneSidedRow* const rope = one_sided_row(*unit.friction)) {
       const std::size_t known = events.size();
-      note_rope(system_, {rope, f}, old.phase, memory_before, state, events);
+      note_rope(system_, {rope, f}, old.phase, impacts_before, state, events);
       for (int w = 0; w < k_friction_event_count && events.size() > known; ++w) fresh_[unit.first_event + w] = 1;
       continue;
     }
-    if (!list_friction_change(f, old, memory_before, state, events)) continue;
+    if (!list_friction_change(f, old, impacts_before, state, events)) continue;
     for (int w = 0; w < k_friction_event_count; ++w) fresh_[unit.first_event + w] = 1;
     const bool is_same_slip = now.phase != FrictionPhase::slip || is_same_direction(f, old, now);
     if ((old.phase == now.phase && is_same_slip) || !unit.friction->is_rigid()) continue;
@@ -421,13 +421,13 @@ void EventHandler::settle_phases(State& state) {
 
 void EventHandler::note_changes(const State& before, const State& state, std::vector<Event>& events) {
   list_changes_within(before, state, events);
-  note_friction(before.friction, before.memory, state, events);
+  note_friction(before.friction, before.impacts, state, events);
   clear_fresh();
 }
 
 void EventHandler::list_changes(const State& before, const State& state, std::vector<Event>& events) {
   list_changes_within(before, state, events);
-  for (std::size_t f = 0; f < state.friction.size(); ++f) (void)list_friction_change(f, before.friction[f], before.memory, state, events);
+  for (std::size_t f = 0; f < state.friction.size(); ++f) (void)list_friction_change(f, before.friction[f], before.impacts, state, events);
 }
 
 // Adds changes of units, and slips of elements that stick in both states but slipped in between.
@@ -462,26 +462,27 @@ EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fir
   for (const int slot : fired) {
     const int f = friction_of_slot_[slot];
     if (f < 0) continue;
+    const FrictionWatch watch = system_.frictions[f].watch_of(slot);
     const OneSidedRow* const rope = one_sided_row(*system_.frictions[f].friction);
-    if (rope && slot == system_.frictions[f].first_event + 2) {
+    if (rope && watch == OneSidedRow::k_length_reached) {
       found.is_any_tight = true;
       fresh_[slot] = 1;
       continue;
     }
-    if (rope && slot == system_.frictions[f].first_event + 1) fail_on_pulley(state, f);
-    const int group = sharing && slot != system_.frictions[f].first_event + 2 ? sharing->group_of(f) : -1;
-    if (group >= 0 && slot == system_.frictions[f].first_event + 1) continue; // the rows separate; decide() finds out how
-    if (group >= 0) {                                                         // fires in the slots of all elements of the group
+    if (rope && watch == OneSidedRow::k_on_pulley) fail_on_pulley(state, f);
+    const int group = sharing && watch != FrictionWatch::contact_point ? sharing->group_of(f) : -1;
+    if (group >= 0 && watch == FrictionWatch::second) continue; // the rows separate; decide() finds out how
+    if (group >= 0) {                                           // fires in the slots of all elements of the group
       if (!is_released_[group]) modes_.release(state, group);
       is_released_[group] = 1;
       continue;
     }
     // If both slots of an element fired, only the first counts: it changes the phase to which the second belongs.
-    if (slot != system_.frictions[f].first_event + 2) {
+    if (watch != FrictionWatch::contact_point) {
       if (has_fired_[f]) continue;
       has_fired_[f] = 1;
     }
-    fire_friction(state, f, slot);
+    fire_friction(state, f, watch);
     found.is_any_at_rest = found.is_any_at_rest || state.friction[f].phase == FrictionPhase::stick;
   }
   return found;
@@ -546,9 +547,9 @@ bool EventHandler::follow_jumps(State& state, const std::vector<double>* event_v
   }
 }
 
-void EventHandler::note_blows(const std::vector<double>& memory_before, const State& state) {
+void EventHandler::note_blows(const std::vector<Impact>& impacts_before, const State& state) {
   for (std::size_t f = 0; f < system_.frictions.size(); ++f)
-    if (was_struck(system_, f, memory_before, state)) blows_.push_back({state.t, system_.element_names[system_.frictions[f].element]});
+    if (was_struck(system_, f, impacts_before, state)) blows_.push_back({state.t, system_.element_names[system_.frictions[f].element]});
 }
 
 // Records ties of friction elements. Ropes and locked clutches have no bound and are excluded. Groups that share a load are excluded too,
@@ -557,7 +558,7 @@ void EventHandler::record_simultaneous_slips(const State& state, const std::vect
   const LoadSharing* const sharing = dynamics_.sharing();
   const auto stuck = [&](std::size_t f) {
     const FrictionElement& friction = *system_.frictions[f].friction;
-    return before_[f].phase == FrictionPhase::stick && !friction.never_slips() && blow_slot(friction) < 0;
+    return before_[f].phase == FrictionPhase::stick && !friction.never_slips() && impact_index(friction) < 0;
   };
   const auto began = [&](std::size_t f) { return state.friction[f].phase == FrictionPhase::slip && stuck(f); };
   std::size_t first = 0;
@@ -583,7 +584,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
   std::fill(has_switched_.begin(), has_switched_.end(), 0);
   settled_ = 0.0;
   before_ = state.friction;
-  memory_before_ = state.memory;
+  impacts_before_ = state.impacts;
   forget_moved_layouts(state);
   modes_.begin_event();
   modes_.evaluate(state);
@@ -599,7 +600,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
   if (!fired.empty()) modes_.forget_evaluation();
   if (found.is_any_tight) {
     if (strike(state, Blow::ropes, events)) is_contact_changed = true;
-    note_blows(memory_before_, state);
+    note_blows(impacts_before_, state);
   }
   bool is_settled = false; // the state satisfies the rows of its modes
   // The mode problem assumes elements at rest, so the remaining rate of a slip that ended is removed first.
@@ -623,13 +624,13 @@ void EventHandler::take_over(State& state, bool closes_rows, std::vector<Event>&
   clear_fresh();
   settled_ = 0.0;
   before_ = state.friction;
-  memory_before_ = state.memory;
+  impacts_before_ = state.impacts;
   dynamics_.clear_layouts();
   modes_.begin_event();
   blows_.clear();
   if (closes_rows) {
     strike(state, Blow::rows, events);
-    note_blows(memory_before_, state);
+    note_blows(impacts_before_, state);
   }
   conclude(state, true, false, events);
 }
@@ -648,7 +649,7 @@ void EventHandler::conclude(State& state, bool is_loading_changed, bool is_settl
     is_settled = true;
   }
   if (!modes_.decide(state)) is_settled = false;
-  note_friction(before_, memory_before_, state, events);
+  note_friction(before_, impacts_before_, state, events);
   if (!is_settled && has_new_rows(before_, state)) settle(state);
 }
 

@@ -94,19 +94,19 @@ private:
   bool switch_units(State& state, const std::vector<int>& fired, std::vector<Event>& events);
   [[nodiscard]] std::vector<int> slots_made_negative_by_jump(const std::vector<double>& before) const;
   bool follow_jumps(State& state, const std::vector<double>* event_value_before, std::vector<Event>& events);
-  void fire_friction(State& state, int f, int slot);
+  void fire_friction(State& state, int f, FrictionWatch fired);
   void move_on(State& state, int f, const FrictionState& from);
   bool update_loading(State& state);
-  void note_blows(const std::vector<double>& memory_before, const State& state);
+  void note_blows(const std::vector<Impact>& impacts_before, const State& state);
   void record_simultaneous_slips(const State& state, const std::vector<double>& event_value);
   [[nodiscard]] bool is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const;
   [[nodiscard]] bool has_capacity(const State& state, std::size_t f) const;
   [[nodiscard]] EventKind slip_kind(std::size_t f, const FrictionState& old, const FrictionState& now) const;
   void list_changes_within(const State& before, const State& state, std::vector<Event>& events) const;
   void list_unit_change(int u, UnitMode from, UnitMode to, double t, std::vector<Event>& events) const;
-  [[nodiscard]] bool list_friction_change(std::size_t f, const FrictionState& old, const std::vector<double>& memory_before,
+  [[nodiscard]] bool list_friction_change(std::size_t f, const FrictionState& old, const std::vector<Impact>& impacts_before,
                                           const State& state, std::vector<Event>& events);
-  void note_friction(const std::vector<FrictionState>& before, const std::vector<double>& memory_before, const State& state,
+  void note_friction(const std::vector<FrictionState>& before, const std::vector<Impact>& impacts_before, const State& state,
                      std::vector<Event>& events);
   void forget_moved_layouts(const State& state);
   void load(State& state, int f);
@@ -133,7 +133,7 @@ private:
   double settled_ = 0.0;
   std::vector<double> y_, dy_;
   std::vector<FrictionState> before_; ///< friction states at the start of handle()
-  std::vector<double> memory_before_;
+  std::vector<Impact> impacts_before_;
   std::vector<double> event_value_before_; ///< event functions at the start of handle(), if two or more elements stuck
   std::vector<SimultaneousSlip> ties_;
   std::vector<RigidBlow> blows_;

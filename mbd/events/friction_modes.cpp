@@ -166,7 +166,8 @@ private:
 // Releases a rope that would have to push although its constraint is satisfied: other ropes carry its load. Returns true if there is one.
 bool slacken_idle(const System& system, const Dynamics& dynamics, State& state) {
   for (const auto& [rope, f] : one_sided_rows(system)) {
-    if (state.friction[f].phase != FrictionPhase::stick || dynamics.event_value()[system.frictions[f].first_event] >= 0.0) continue;
+    if (state.friction[f].phase != FrictionPhase::stick || dynamics.event_value()[system.frictions[f].slot(FrictionWatch::first)] >= 0.0)
+      continue;
     state.friction[f].phase = FrictionPhase::slip;
     state.friction[f].sign = 0;
     return true;
@@ -199,9 +200,9 @@ void FrictionModes::set_anchor(State& state, int f) const {
 // Within one slip the direction does not change, so distances can be added.
 void FrictionModes::end_slip(State& state, int f) const {
   const RowSpec* rows = system_.frictions[f].friction->rows(state.friction[f]);
-  const double before = rows[0].memory >= 0 ? state.memory[rows[0].memory] : 0.0;
+  const double before = rows[0].base >= 0 ? state.bases[rows[0].base].value : 0.0;
   set_anchor(state, f);
-  if (rows[0].memory >= 0) state.friction[f].slid += std::abs(state.memory[rows[0].memory] - before);
+  if (rows[0].base >= 0) state.friction[f].slid += std::abs(state.bases[rows[0].base].value - before);
 }
 
 void FrictionModes::evaluate(const State& state) {
@@ -271,7 +272,7 @@ bool FrictionModes::release_overloaded(State& state) const {
   bool is_any = false;
   for (std::size_t g = 0; g < sharing->groups().size(); ++g) {
     const int first = sharing->groups()[g].frictions.front();
-    if (dynamics_.event_value()[system_.frictions[first].first_event] >= 0.0) continue;
+    if (dynamics_.event_value()[system_.frictions[first].slot(FrictionWatch::first)] >= 0.0) continue;
     release(state, static_cast<int>(g));
     is_any = true;
   }
@@ -346,7 +347,7 @@ void FrictionModes::let_go_moving(State& state) {
   if (!sharing) return;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     const bool is_discordant = state.friction[f].phase == FrictionPhase::stick && sharing->group_of(f) >= 0 &&
-                               dynamics_.event_value()[system_.frictions[f].first_event + 1] < 0.0;
+                               dynamics_.event_value()[system_.frictions[f].slot(FrictionWatch::second)] < 0.0;
     const FrictionElement& friction = *system_.frictions[f].friction;
     if (!is_discordant || friction.dimension() != 1) continue;
     if (is_at_rest(state, f)) continue;
@@ -367,7 +368,7 @@ void FrictionModes::anchor_resting(State& state) const {
   if (!sharing) return;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     const bool is_discordant = state.friction[f].phase == FrictionPhase::stick && sharing->group_of(f) >= 0 &&
-                               dynamics_.event_value()[system_.frictions[f].first_event + 1] < 0.0;
+                               dynamics_.event_value()[system_.frictions[f].slot(FrictionWatch::second)] < 0.0;
     if (is_discordant && is_at_rest(state, f)) set_anchor(state, f);
   }
 }

@@ -273,7 +273,7 @@ void TimeStepping::finish_phases(Dynamics& dynamics, State& state, double h) {
     for (int r = 0; r < part.dimension; ++r) {
       const auto m = evaluate_row<false>(rows[r], dynamics.motion().data());
       rate[r] = m.rate;
-      if (rows[r].memory >= 0 && !stays) state.memory[rows[r].memory] = m.value;
+      if (rows[r].base >= 0 && !stays) state.bases[rows[r].base].value = m.value;
     }
     friction.is_onset = false;
     friction.phase = part.block.sticks ? FrictionPhase::stick : FrictionPhase::slip;

@@ -66,7 +66,7 @@ void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
     if (friction.phase == FrictionPhase::apart) continue;
     const RowSpec* rows = element.rows(friction);
     for (int r = 0; r < element.dimension() && !has_held(friction, f); ++r)
-      if (rows[r].memory >= 0) state.memory[rows[r].memory] = evaluate_row<false>(rows[r], dynamics.motion().data()).value;
+      if (rows[r].base >= 0) state.bases[rows[r].base].value = evaluate_row<false>(rows[r], dynamics.motion().data()).value;
     FrictionPart part;
     part.friction = f;
     part.has_slid = slid_before(f);

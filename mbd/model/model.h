@@ -82,6 +82,12 @@ struct GivenFriction {
   std::string source;       ///< as the model states it; empty: not stated
 };
 
+/// A channel whose extremes decide whether a result can be trusted.
+struct TrustChannel {
+  std::string name;
+  bool is_margin = false; ///< only values below 1 matter
+};
+
 /// One kind of element: its fields and its compilation into a system.
 struct ElementKind {
   std::string name;  ///< name in model files, such as "spring_damper"
@@ -106,8 +112,10 @@ struct ElementKind {
   GivenFriction (*friction)(const Element& element) = nullptr;
   /// For kinds with a contact: returns what other parts of the program ask about it (mbd/system/contact_description.h). Null otherwise.
   ContactDescription (*contact)(const Element& element, const Model& model) = nullptr;
+  /// True for ropes: where the element's gap opens it goes slack, and where it closes it becomes taut.
+  bool goes_slack = false;
   /// Returns the channels whose extremes `judge` uses; their errors decide whether its result can be trusted.
-  std::vector<std::string> (*channels_of_trust)(const Element& element) = nullptr;
+  std::vector<TrustChannel> (*channels_of_trust)(const Element& element) = nullptr;
 
   /// Declares T as the struct of its elements.
   template <class T> void holds() {

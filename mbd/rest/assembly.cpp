@@ -173,12 +173,13 @@ void require_finite(const Model& model, const System& system, const State& state
     const Body* const body = model.find_body(name);
     throw ModelError(body ? body->where : Location{}, "body '" + name + "' cannot be placed" + remedy);
   }
+  const auto is_base_finite = [&](const RowBase& base) { return is_finite(base.value) && is_finite(base.rate); };
   for (const RowSpec& row : system.rows)
-    if (row.memory >= 0 && (!is_finite(state.memory[static_cast<std::size_t>(row.memory)]) ||
-                            !is_finite(state.memory[static_cast<std::size_t>(row.memory) + 1])))
+    if (row.base >= 0 && !is_base_finite(state.bases[static_cast<std::size_t>(row.base)]))
       throw ModelError(model.elements[static_cast<std::size_t>(row.element)].element->where,
                        "'" + system.element_names[static_cast<std::size_t>(row.element)] + "' has no length or angle" + remedy);
-  if (!std::all_of(state.memory.begin(), state.memory.end(), is_finite) || !std::all_of(state.inner.begin(), state.inner.end(), is_finite))
+  if (!std::all_of(state.bases.begin(), state.bases.end(), is_base_finite) ||
+      !std::all_of(state.inner.begin(), state.inner.end(), is_finite))
     throw ModelError(Location{model.bodies.front().where.file}, std::string("the model cannot begin") + remedy);
 }
 

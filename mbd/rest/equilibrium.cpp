@@ -105,7 +105,7 @@ private:
     if (!settling.rest) throw ElementFailure(tried, none.elements());
     const int iterations = result_.iterations;
     State rest = *settling.rest;
-    rest.memory = held_memory(rest);
+    rest.bases = held_bases(rest);
     state_ = rest;
     // A body that slid away did not stand, whatever its final pose.
     if (const auto* const slid = dynamic_cast<const SlidAway*>(&none);
@@ -122,13 +122,12 @@ private:
       throw ElementFailure(tried, none.elements());
     }
   }
-  // Returns the memory with the drives' original values and the friction anchors of `rest`.
-  [[nodiscard]] std::vector<double> held_memory(const State& rest) const {
-    std::vector<double> memory = rest.memory;
+  // Returns the bases of rows with the drives' original values and the friction anchors of `rest`.
+  [[nodiscard]] std::vector<RowBase> held_bases(const State& rest) const {
+    std::vector<RowBase> bases = rest.bases;
     for (const RowSpec& row : system_.rows)
-      if (row.drive)
-        for (int k = 0; k < 2; ++k) memory[row.memory + k] = state_.memory[row.memory + k];
-    return memory;
+      if (row.drive) bases[row.base] = state_.bases[row.base];
+    return bases;
   }
 
   Equilibrium search() {
@@ -207,8 +206,8 @@ private:
     for (const RowSpec& row : system_.rows) {
       if (!row.drive) continue;
       const double now = static_target(row, state_);
-      held.memory[row.memory + 1] = -row.drive->drive(state_.t, row.level).rate;
-      held.memory[row.memory] += now - static_target(row, held);
+      held.bases[row.base].rate = -row.drive->drive(state_.t, row.level).rate;
+      held.bases[row.base].value += now - static_target(row, held);
     }
     return held;
   }

@@ -45,7 +45,7 @@ MatX dense(const std::vector<Statics::MatrixEntry>& entries, Eigen::Index rows, 
 
 } // namespace
 
-double static_target(const RowSpec& row, const State& state) { return row_target(row, state.memory.data(), state.t).value; }
+double static_target(const RowSpec& row, const State& state) { return row_target(row, state.bases.data(), state.t).value; }
 
 void anchor_friction(const System& system, State& state, int f) {
   std::vector<Motion<double>> placed;
@@ -71,7 +71,7 @@ void Statics::evaluate(State& state) {
   evaluation_.t = state.t;
   evaluation_.mode = state.mode.data();
   evaluation_.friction = state.friction.data();
-  evaluation_.memory = state.memory.data();
+  evaluation_.bases = state.bases.data();
   evaluation_.inner = state.inner.data();
   for (int i = 0; i < system_.body_count(); ++i) {
     Motion<double>& m = motion_[i];

@@ -27,7 +27,7 @@ class Statics {
 public:
   explicit Statics(const System& system);
 
-  /// Evaluates forces at `state`. Reads poses, time, friction and memory; sets modes from the poses.
+  /// Evaluates forces at `state`. Reads poses, time, friction and bases of rows; sets modes from the poses.
   void evaluate(State& state);
   /// Collects the rows active in `state`, those of joints and drives first. `left_out`: flags per slot of Snapshot::friction_force for
   /// dependent friction rows to omit; empty: none.

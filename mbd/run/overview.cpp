@@ -89,7 +89,8 @@ private:
   }
 
   const JointAssessment* joint_that_slid(const CriterionResult& c) const {
-    if (c.channel.empty() ? false : !c.channel.ends_with(".margin")) return nullptr;
+    const Channel* const channel = report_.run.loaded->system->find_channel(c.channel);
+    if (!c.channel.empty() && !(channel && channel->role == ChannelRole::margin)) return nullptr;
     for (const JointAssessment& joint : report_.joints)
       if (joint.joint == c.name && joint.first_slip && (joint.has_slipped || joint.has_come_apart)) return &joint;
     return nullptr;

@@ -19,8 +19,8 @@ public:
       if (!row.drive) continue;
       const double now = static_target(row, state);
       row.drive = &k_still;
-      state.memory[row.memory + 1] = 0.0;
-      state.memory[row.memory] += now - static_target(row, state);
+      state.bases[row.base].rate = 0.0;
+      state.bases[row.base].value += now - static_target(row, state);
     }
   }
   HeldDrives(const HeldDrives&) = delete;

@@ -44,7 +44,7 @@ std::vector<ContactAtStart> contacts_at(const LoadedModel& loaded, const State& 
   snapshot.t = still.t;
   snapshot.motion = statics.motion().data();
   snapshot.evaluation = &statics.evaluation();
-  snapshot.memory = still.memory.data();
+  snapshot.impacts = still.impacts.data();
   std::unordered_map<std::string, const Channel*> channel_of;
   for (const Channel& channel : system.channels) channel_of.emplace(channel.name, &channel);
   const auto value = [&](const std::string& name) -> std::optional<double> {

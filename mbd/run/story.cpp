@@ -107,9 +107,9 @@ private:
     return found == entry_of_.end() ? nullptr : found->second;
   }
 
-  bool is_rope(const std::string& element) const {
+  bool goes_slack(const std::string& element) const {
     const ElementEntry* entry = entry_of(element);
-    return entry && entry->kind->name.ends_with("rope");
+    return entry && entry->kind->goes_slack;
   }
 
   std::optional<ContactDescription> contact_at(const std::string& element) const {
@@ -188,7 +188,7 @@ private:
       return !is_opening ? StorySubject::touches : is_upright(event.element) ? StorySubject::lifts : StorySubject::opens;
     case EventKind::enters_gap:
     case EventKind::closes_gap:
-      if (is_rope(event.element)) return is_opening ? StorySubject::slack : StorySubject::taut;
+      if (goes_slack(event.element)) return is_opening ? StorySubject::slack : StorySubject::taut;
       return is_opening ? StorySubject::leaves_gap : StorySubject::closes_gap;
     default: return is_opening ? StorySubject::strikes : StorySubject::leaves_stop;
     }

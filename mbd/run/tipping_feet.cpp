@@ -34,7 +34,7 @@ private:
     snapshot.t = state_.t;
     snapshot.motion = statics_.motion().data();
     snapshot.evaluation = &statics_.evaluation();
-    snapshot.memory = state_.memory.data();
+    snapshot.impacts = state_.impacts.data();
     double size = 0.0;
     for (const int i : {a, b})
       if (i != k_ground) size = std::max(size, std::sqrt(loaded_.system->bodies[i].inertia / loaded_.system->bodies[i].mass));

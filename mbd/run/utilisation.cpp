@@ -158,7 +158,7 @@ private:
   void add_ties() {
     for (const ChannelRange& range : report_.ranges()) {
       const std::string& name = range.channel->name;
-      if (!name.ends_with(".strength_share") || known_.contains(name) || !std::isfinite(range.high.value)) continue;
+      if (range.channel->role != ChannelRole::strength_use || known_.contains(name) || !std::isfinite(range.high.value)) continue;
       CriterionResult c;
       c.value = range.high.value;
       c.limit = 1.0;
@@ -174,7 +174,7 @@ private:
 
   struct Friction {
     std::string element;
-    const ChannelRange* used = nullptr; ///< range of its channel "share"
+    const ChannelRange* used = nullptr; ///< range of its channel with the role friction_use
     double share = 0.0, at = 0.0;
   };
 
@@ -185,7 +185,7 @@ private:
     std::vector<Friction> frictions;
     for (const ChannelRange& range : report_.ranges()) {
       const std::string& name = range.channel->name;
-      if (!name.ends_with(".share") || known_.contains(name) || !(range.high.value > k_unused)) continue;
+      if (range.channel->role != ChannelRole::friction_use || known_.contains(name) || !(range.high.value > k_unused)) continue;
       Friction f{element_part(name), &range, std::min(1.0, range.high.value), range.high.t};
       if (const auto slip = first_slip.find(f.element); slip != first_slip.end()) {
         f.share = 1.0;

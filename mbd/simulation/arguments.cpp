@@ -30,6 +30,13 @@ void require_finite(const std::vector<double>& values, const std::string& what) 
     throw std::invalid_argument("number " + std::to_string(bad - values.begin()) + " of the state's " + what + " is not finite");
 }
 
+// Returns both members of all entries, one entry after the other.
+template <class T> std::vector<double> numbers_of(const std::vector<T>& entries, double T::*first, double T::*second) {
+  std::vector<double> numbers;
+  for (const T& entry : entries) numbers.insert(numbers.end(), {entry.*first, entry.*second});
+  return numbers;
+}
+
 } // namespace
 
 SimulationOptions checked(SimulationOptions options, double start) {
@@ -50,12 +57,14 @@ const State& checked(const State& state, const System& system) {
   require_size(state.v.size(), 3 * system.bodies.size(), "velocities");
   require_size(state.mode.size(), system.units.size(), "modes");
   require_size(state.friction.size(), system.frictions.size(), "friction states");
-  require_size(state.memory.size(), system.initial_memory.size(), "bases of rows");
+  require_size(state.bases.size(), system.initial_bases.size(), "bases of rows");
+  require_size(state.impacts.size(), system.initial_impacts.size(), "impacts");
   require_size(state.inner.size(), system.initial_inner.size(), "inner states");
   if (!std::isfinite(state.t)) throw std::invalid_argument("the state's time is not finite");
   require_finite(state.q, "coordinates");
   require_finite(state.v, "velocities");
-  require_finite(state.memory, "bases of rows");
+  require_finite(numbers_of(state.bases, &RowBase::value, &RowBase::rate), "bases of rows");
+  require_finite(numbers_of(state.impacts, &Impact::impulse, &Impact::lost), "impacts");
   require_finite(state.inner, "inner states");
   return state;
 }

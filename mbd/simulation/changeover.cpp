@@ -97,7 +97,7 @@ bool Changeover::closes_rows() const {
   const auto is_new = [this](int element) { return begins[static_cast<std::size_t>(element)] != 0; };
   return std::any_of(to.rows.begin(), to.rows.end(), [&](const RowSpec& row) { return is_new(row.element); }) ||
          std::any_of(to.frictions.begin(), to.frictions.end(),
-                     [&](const FrictionUnit& unit) { return is_new(unit.element) && blow_slot(*unit.friction) >= 0; });
+                     [&](const FrictionUnit& unit) { return is_new(unit.element) && impact_index(*unit.friction) >= 0; });
 }
 
 State carried(const Changeover& change, const State& state) {
@@ -115,10 +115,13 @@ State carried(const Changeover& change, const State& state) {
         [&](std::size_t a, std::size_t b) { next.mode[b] = state.mode[a]; });
   carry(elements_of(change.from.frictions), elements_of(change.to.frictions), goes_on,
         [&](std::size_t a, std::size_t b) { next.friction[b] = state.friction[a]; });
-  carry(change.from.memory_elements, change.to.memory_elements, goes_on, [&](std::size_t a, std::size_t b) {
-    const bool is_set_anew = change.from.initial_memory[a] != change.to.initial_memory[b]; // the length of a rod or a rope
-    if (!is_set_anew) next.memory[b] = state.memory[a];
+  carry(change.from.base_elements, change.to.base_elements, goes_on, [&](std::size_t a, std::size_t b) {
+    next.bases[b].rate = state.bases[a].rate;
+    const bool is_set_anew = change.from.initial_bases[a].value != change.to.initial_bases[b].value; // the length of a rod or a rope
+    if (!is_set_anew) next.bases[b].value = state.bases[a].value;
   });
+  carry(change.from.impact_elements, change.to.impact_elements, goes_on,
+        [&](std::size_t a, std::size_t b) { next.impacts[b] = state.impacts[a]; });
   const OwnStateGroup *const had = own_state_group(change.from), *const has = own_state_group(change.to);
   const int own_states = had && has ? static_cast<int>(has->entries.size()) : 0;
   carry(elements_of_inner(change.from, own_states), elements_of_inner(change.to, own_states), goes_on,
@@ -133,8 +136,8 @@ void place_what_closes(const Changeover& change, State& state) {
   for (const RowSpec& row : change.to.rows) {
     if (change.begins[static_cast<std::size_t>(row.element)] == 0) continue;
     const double now = evaluate_row<false>(row, motion.data()).value;
-    if (change.closes(row.element) && row.memory >= 0 && !row.drive) state.memory[static_cast<std::size_t>(row.memory)] = now;
-    const double off = off_target(row, now, row_target(row, state.memory.data(), state.t).value);
+    if (change.closes(row.element) && row.base >= 0 && !row.drive) state.bases[static_cast<std::size_t>(row.base)].value = now;
+    const double off = off_target(row, now, row_target(row, state.bases.data(), state.t).value);
     const double fits = k_fit * (row.kind == MeasureKind::angle ? 1.0 : change.to.scale.length);
     if (std::abs(off) > fits) fail_to_close(change.to, state, row, off);
   }

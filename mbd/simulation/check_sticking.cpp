@@ -19,7 +19,7 @@ void check_sticking(const System& system, const State& state, const LoadSharing*
     const FrictionUnit& unit = system.frictions[f];
     if (unit.friction->dimension() != 1 || unit.friction->never_slips()) continue;
     if (state.friction[f].phase != FrictionPhase::stick || (sharing && sharing->group_of(f) >= 0)) continue;
-    const double one = event_value[unit.first_event], other = event_value[unit.first_event + 1];
+    const double one = event_value[unit.slot(FrictionWatch::first)], other = event_value[unit.slot(FrictionWatch::second)];
     const std::string& name = system.element_names[unit.element];
     if (const OneWayLock* const lock = one_way_lock(*unit.friction)) {
       const double beyond = -std::min(one, other); // the bounded side

@@ -66,13 +66,14 @@ RunLeg::RunLeg(RunLeg& before, const Changeover& change)
       record_->events.push_back({state_.t, system_.element_names[unit.element], is == EventKind::none ? EventKind::sticks : is});
   }
   book_stored_energy(change, before.state_, state_);
-  const std::vector<double> unhurt = state_.memory, rates = state_.v;
+  const std::vector<Impact> impacts = state_.impacts;
+  const std::vector<double> rates = state_.v;
   const std::size_t known = record_->events.size();
   const double dissipated = state_.dissipated;
   handler_.take_over(state_, change.closes_rows(), record_->events);
   if (change.closes_rows() && jumps(rates, state_.v)) note_blow(*record_, known, state_.dissipated - dissipated);
   keep_blows();
-  project_and_set_up(before.ledger_.get(), unhurt);
+  project_and_set_up(before.ledger_.get(), impacts);
 }
 
 // Interrupts the leg and returns true if an action is due. `known`: number of events before the present one was handled.

@@ -51,8 +51,8 @@ double integral(const double* coefficient, int count, double theta) {
 
 } // namespace
 
-PowerLedger::PowerLedger(const System& system, int max_dimension, std::vector<double> memory)
-    : system_(system), unhurt_(std::move(memory)), count_(system.integrands.size()), pieces_(k_kept), total_(count_, 0.0),
+PowerLedger::PowerLedger(const System& system, int max_dimension, std::vector<Impact> impacts)
+    : system_(system), impacts_before_(std::move(impacts)), count_(system.integrands.size()), pieces_(k_kept), total_(count_, 0.0),
       stored_(count_, 0.0), y_(static_cast<std::size_t>(max_dimension)), dy_(y_.size()) {
   for (Piece& piece : pieces_) {
     piece.base.resize(count_);
@@ -85,10 +85,10 @@ void PowerLedger::end(const Snapshot& snapshot) {
 }
 
 void PowerLedger::begin(double t, const Snapshot& snapshot) {
-  // Energy lost by impulses at the start is counted from the memory before them. No other stored energy depends on the memory.
+  // Energy lost by impacts at the start is counted from those before them.
   if (known_ == 0) {
     Snapshot unhurt = snapshot;
-    unhurt.memory = unhurt_.data();
+    unhurt.impacts = impacts_before_.data();
     for (std::size_t i = 0; i < count_; ++i)
       if (const auto& stored = system_.integrands[i].stored) total_[i] += stored(unhurt) - stored(snapshot);
   }

@@ -16,9 +16,9 @@ namespace steplap {
 /// Integrates powers during a run; one per Simulation.
 class PowerLedger final : public Integrals {
 public:
-  /// `max_dimension`: upper limit of the dimension of the packed state; `memory`: State::memory before the impulses at the start. Keeps a
+  /// `max_dimension`: upper limit of the dimension of the packed state; `impacts`: State::impacts before those at the start. Keeps a
   /// reference to the system.
-  PowerLedger(const System& system, int max_dimension, std::vector<double> memory);
+  PowerLedger(const System& system, int max_dimension, std::vector<Impact> impacts);
 
   /// Continues with the integrals of `before`, whose system has the same integrands.
   void go_on_from(const PowerLedger& before) { total_ = before.total_; }
@@ -48,7 +48,7 @@ private:
   void close(const Piece& piece);
 
   const System& system_;
-  std::vector<double> unhurt_; ///< memory (State::memory) before the first impulses
+  std::vector<Impact> impacts_before_; ///< State::impacts before the impacts at the start
   std::size_t count_;
   std::vector<Piece> pieces_; ///< ring buffer
   std::size_t last_ = 0, known_ = 0;

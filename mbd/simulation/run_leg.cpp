@@ -49,7 +49,7 @@ RunLeg::RunLeg(const System& system, const State& initial, SimulationOptions opt
   handler_.start(state_);
   handler_.note_start(state_, record_->events);
   keep_blows();
-  project_and_set_up(nullptr, system_.initial_memory);
+  project_and_set_up(nullptr, system_.initial_impacts);
   if (options_.output_step > 0.0) {
     record_->samples = static_cast<long>(std::floor(state_.t / options_.output_step + k_output_slack)); // none are due before the start
     record_sample(state_.t);
@@ -57,7 +57,7 @@ RunLeg::RunLeg(const System& system, const State& initial, SimulationOptions opt
 }
 
 // Precondition: the constraints are satisfied to rounding, or to the digits of the file.
-void RunLeg::project_and_set_up(const PowerLedger* before, const std::vector<double>& unhurt) {
+void RunLeg::project_and_set_up(const PowerLedger* before, const std::vector<Impact>& impacts) {
   dynamics_.set_state(state_);
   dynamics_.pack(state_, y_.data());
   dynamics_.project(state_.t, y_.data(), options_.settings.projection_tolerance);
@@ -71,7 +71,7 @@ void RunLeg::project_and_set_up(const PowerLedger* before, const std::vector<dou
   }
   if (options_.has_extremes) extremes_ = std::make_unique<ExtremeFinder>(system_, system_.largest_dimension());
   if (!system_.integrands.empty()) {
-    ledger_ = std::make_unique<PowerLedger>(system_, system_.largest_dimension(), unhurt);
+    ledger_ = std::make_unique<PowerLedger>(system_, system_.largest_dimension(), impacts);
     if (before) ledger_->go_on_from(*before);
     dynamics_.set_snapshot_integrals(ledger_.get());
   }
@@ -177,7 +177,7 @@ void RunLeg::fail_infinite(double t) const {
 // group that shares a load the event function is that of the group.
 void RunLeg::check_holding(double t, const std::vector<double>& event_value) const {
   for (const int f : joints_) {
-    const double left = event_value[system_.frictions[f].first_event];
+    const double left = event_value[system_.frictions[f].slot(FrictionWatch::first)];
     if (left >= -k_held_beyond || state_.friction[f].phase != FrictionPhase::stick) continue;
     throw ElementFailure("at t = " + number_text(t) + " s '" + system_.element_names[system_.frictions[f].element] +
                              "' holds with a margin of " + rounded_text(1.0 / (1.0 - left), 12) +
@@ -306,10 +306,11 @@ std::vector<int> RunLeg::slots_of_other(double t, const std::vector<int>& fired)
   for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
     const FrictionUnit& unit = system_.frictions[f];
     const std::string& name = system_.element_names[unit.element];
-    if (name == tie.slips) std::erase_if(slots, [&](int slot) { return slot == unit.first_event || slot == unit.first_event + 1; });
+    const int first = unit.slot(FrictionWatch::first), second = unit.slot(FrictionWatch::second);
+    if (name == tie.slips) std::erase_if(slots, [&](int slot) { return slot == first || slot == second; });
     if (name != tie.sticks) continue;
     const std::vector<double>& event_value = dynamics_.event_value();
-    slots.push_back(event_value[unit.first_event] <= event_value[unit.first_event + 1] ? unit.first_event : unit.first_event + 1);
+    slots.push_back(event_value[first] <= event_value[second] ? first : second);
   }
   return slots;
 }

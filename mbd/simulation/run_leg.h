@@ -67,8 +67,7 @@ public:
   void break_off();
 
 private:
-  void project_and_set_up(const PowerLedger* before,
-                          const std::vector<double>& unhurt); // `unhurt`: memory before the impulses at the start
+  void project_and_set_up(const PowerLedger* before, const std::vector<Impact>& impacts); // `impacts`: before those at the start
   void finish_extremes();
   void keep_growth(double t, bool is_last);
   [[nodiscard]] bool is_action_due(std::size_t known);

@@ -7,7 +7,7 @@
 //   slip    slack: no force; valid while the length is below that of the rope
 //
 // The tension has no upper bound, so a taut rope never slips like friction. When a slack rope becomes taut with a positive rate, velocities
-// jump (mbd/events/blow.h), and the impulse is stored in the memory.
+// jump (mbd/events/blow.h), and the impulse is stored in State::impacts.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -29,11 +29,14 @@ public:
   static constexpr double k_too_long = 1e-6;   ///< relative: excess of length that is accepted as rounding in the model file
   static constexpr double k_least_part = 1e-6; ///< relative: a shorter straight part has run onto its pulley
 
-  RowSpec row;               ///< the first distance; its memory contains the length of the rope
+  static constexpr FrictionWatch k_on_pulley = FrictionWatch::second;             ///< of a taut rope
+  static constexpr FrictionWatch k_length_reached = FrictionWatch::contact_point; ///< of a slack rope
+
+  RowSpec row;               ///< the first distance; its base is the length of the rope
   double length = 0.0;       ///< length of the rope, m
   double dead_band = 0.0;    ///< excess of length, m, at which a slack rope becomes taut; far above the rounding of positions
   double rest_tension = 0.0; ///< N; smaller tensions are rounding
-  int blow = 0;              ///< index in the memory of the impulse of the last blow, N s, followed by the energy lost in all blows, J
+  int impact = 0;            ///< index in State::impacts
   std::vector<std::pair<std::string, std::string>> points; ///< names of the end points of each part
 
   /// Sets the distances that make up the length, at least one.

@@ -12,7 +12,7 @@ class OneWayLock : public FrictionElement {
 public:
   static constexpr double k_without_bound = 1e30; ///< bound that no machine reaches, N or N m
 
-  int blow = 0; ///< index in the memory of the last impulse, N s or N m s, followed by the energy lost in all impulses, J
+  int impact = 0; ///< index in State::impacts
 
   /// Returns the sign of the rate that is locked; 0 if the force is bounded in both directions.
   [[nodiscard]] virtual int refuses() const = 0;
@@ -27,11 +27,11 @@ public:
   return lock && lock->refuses() != 0 ? lock : nullptr;
 }
 
-/// Returns the index in the memory of the last impulse, followed by the lost energy; −1 for elements without impulses.
-[[nodiscard]] inline int blow_slot(const FrictionElement& friction) {
-  if (const OneSidedRow* rope = one_sided_row(friction)) return rope->blow;
+/// Returns the index in State::impacts; −1 for elements without impacts.
+[[nodiscard]] inline int impact_index(const FrictionElement& friction) {
+  if (const OneSidedRow* rope = one_sided_row(friction)) return rope->impact;
   const OneWayLock* const lock = one_way_lock(friction);
-  return lock ? lock->blow : -1;
+  return lock ? lock->impact : -1;
 }
 
 } // namespace steplap

@@ -249,9 +249,9 @@ void RequestedChannels::add_share(const Share& share) {
   for (std::size_t r = share.first_row; r < share.row_end; ++r)
     if (system.rows[r].drive) driven.push_back(r);
 
-  std::vector<int> blows; // indices in the memory of the energy that ropes and one-way clutches have lost
+  std::vector<int> impacts;
   for (const std::size_t f : frictions)
-    if (const int slot = blow_slot(*system.frictions[f].friction); slot >= 0) blows.push_back(slot + 1);
+    if (const int index = impact_index(*system.frictions[f].friction); index >= 0) impacts.push_back(index);
 
   const auto stored = [givers, inner](const Snapshot& s) {
     double sum = 0.0;
@@ -268,10 +268,10 @@ void RequestedChannels::add_share(const Share& share) {
       return power;
     };
     if (!inner.empty()) integrand.stored = stored;
-    if (!blows.empty())
-      integrand.stored = [blows](const Snapshot& s) {
+    if (!impacts.empty())
+      integrand.stored = [impacts](const Snapshot& s) {
         double lost = 0.0;
-        for (const int slot : blows) lost += s.memory[slot];
+        for (const int index : impacts) lost += s.impacts[index].lost;
         return -lost;
       };
     add_integral(share, "dissipated", "J", "energy that it has turned into heat since the start", std::move(integrand));

@@ -2,8 +2,8 @@
 //
 //   measure(q) = base + base_rate·t + drive(t)
 //
-// `base` (and `base_rate` of a row driven by acceleration) are in the memory of the state. They are set when the row becomes active: at the
-// start of a run, or at the onset of sticking. The row of a skate constrains only velocities; its value is always zero.
+// `base` (and `base_rate` of a row driven by acceleration) are in State::bases. They are set when the row becomes active: at the start of a
+// run, or at the onset of sticking. The row of a skate constrains only velocities; its value is always zero.
 //
 // A row over more than two bodies (a rope over a moving pulley) is a list of such measures, called parts, whose sum is constrained. Its
 // gradient and second derivative are the sums over the parts.
@@ -21,6 +21,12 @@ namespace steplap {
 
 enum class MeasureKind : unsigned char { axis, distance, angle, slide, roll_line, roll_round, skate };
 
+/// Constants of a row that are set when it becomes active.
+struct RowBase {
+  double value = 0.0; ///< of the measure, m or rad
+  double rate = 0.0;  ///< of the measure of a row driven by acceleration, m/s or rad/s; 0 of all others
+};
+
 /// One constraint row between two bodies: measure, and for a driven row its target.
 struct RowSpec {
   MeasureKind kind = MeasureKind::axis;
@@ -31,7 +37,7 @@ struct RowSpec {
   double radius_a = 0.0, radius_b = 0.0; ///< for rolling
   Vec2 contact_axis = Vec2::Zero();
   bool is_axis_in_a = false;
-  int memory = -1;               ///< index of `base` in State::memory, followed by base_rate; −1: none
+  int base = -1;                 ///< index in State::bases; −1: none
   const Signal* drive = nullptr; ///< null if the row is not driven
   DriveLevel level = DriveLevel::position;
   const char* quantity = "";     ///< constrained quantity, for messages and channels: "x", "angle"
@@ -82,12 +88,12 @@ template <bool WithBias> STEPLAP_INLINE MeasureValue<double> evaluate_row(const 
 }
 
 /// Returns value, rate and acceleration that the row prescribes at time t.
-inline SignalJet row_target(const RowSpec& row, const double* memory, double t) {
+inline SignalJet row_target(const RowSpec& row, const RowBase* bases, double t) {
   SignalJet target;
-  if (row.memory >= 0) target.value = memory[row.memory];
+  if (row.base >= 0) target.value = bases[row.base].value;
   if (row.drive) {
     const SignalJet jet = row.drive->drive(t, row.level);
-    const double base_rate = memory[row.memory + 1];
+    const double base_rate = bases[row.base].rate;
     target.value += base_rate * t + jet.value;
     target.rate = base_rate + jet.rate;
     target.acceleration = jet.acceleration;

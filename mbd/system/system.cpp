@@ -35,14 +35,13 @@ void start_drives(const System& system, State& state, const std::vector<char>* b
   for (const RowSpec& row : system.rows) {
     if (!row.drive || (begins && (*begins)[row.element] == 0)) continue;
     if (row.level == DriveLevel::position) {
-      state.memory[row.memory] = system.initial_memory[row.memory] + row.drive->value(0.0);
+      state.bases[row.base].value = system.initial_bases[row.base].value + row.drive->value(0.0);
       continue;
     }
     const auto m = evaluate_row<false>(row, motion.data());
     const SignalJet now = row.drive->drive(state.t, row.level);
     const double base_rate = row.level == DriveLevel::acceleration ? m.rate - now.rate : 0.0;
-    state.memory[row.memory] = m.value - now.value - base_rate * state.t;
-    state.memory[row.memory + 1] = base_rate;
+    state.bases[row.base] = {m.value - now.value - base_rate * state.t, base_rate};
   }
 }
 
@@ -59,7 +58,8 @@ State System::initial_state() const {
     }
   state.mode.assign(units.size(), 0);
   state.friction.resize(frictions.size());
-  state.memory = initial_memory;
+  state.bases = initial_bases;
+  state.impacts = initial_impacts;
   state.inner = initial_inner;
   return state;
 }
@@ -411,11 +411,16 @@ void SystemBuilder::add_endless_face(int contact, int a, std::vector<Vec2> point
   system_->endless_faces.push_back(std::move(face));
 }
 
-int SystemBuilder::add_memory(double base, double base_rate) {
-  system_->initial_memory.push_back(base);
-  system_->initial_memory.push_back(base_rate);
-  system_->memory_elements.insert(system_->memory_elements.end(), 2, element_);
-  return static_cast<int>(system_->initial_memory.size()) - 2;
+int SystemBuilder::add_base(double value) {
+  system_->initial_bases.push_back({value, 0.0});
+  system_->base_elements.push_back(element_);
+  return static_cast<int>(system_->initial_bases.size()) - 1;
+}
+
+int SystemBuilder::add_impacts() {
+  system_->initial_impacts.emplace_back();
+  system_->impact_elements.push_back(element_);
+  return static_cast<int>(system_->initial_impacts.size()) - 1;
 }
 
 int SystemBuilder::add_inner(const ForceGroup& group, double start) {

@@ -6,7 +6,6 @@
 #include "mbd/model/signal_network.h"
 #include "mbd/system/endless_face.h"
 #include "mbd/system/roles.h"
-#include "mbd/system/scene_units.h"
 
 #include <functional>
 #include <limits>
@@ -23,6 +22,12 @@ namespace steplap {
 class RequestedChannels;
 class System;
 
+/// Impacts that an inextensible rope or a one-way clutch has taken.
+struct Impact {
+  double impulse = 0.0; ///< of the last impact, N s or N m s; 0 before the first
+  double lost = 0.0;    ///< energy lost in all impacts, J
+};
+
 /// Everything that changes during a run. q and v contain (x, y, θ) of each body's centre of gravity and their rates, 3 numbers per body;
 /// body 0 is the ground.
 struct State {
@@ -30,7 +35,8 @@ struct State {
   std::vector<double> q, v;            ///< m and rad; m/s and rad/s
   std::vector<UnitMode> mode;          ///< per unit
   std::vector<FrictionState> friction; ///< per friction element
-  std::vector<double> memory;          ///< constants of rows that are set during the run (RowSpec::memory)
+  std::vector<RowBase> bases;          ///< constants of rows that are set during the run (RowSpec::base)
+  std::vector<Impact> impacts;         ///< per rope and one-way clutch (OneSidedRow::impact, OneWayLock::impact)
   std::vector<double> inner;           ///< internal states of force elements
   double dissipated = 0.0;             ///< dissipated energy since the start, J
   double work = 0.0;                   ///< work of loads and drives since the start, J
@@ -52,7 +58,7 @@ struct Snapshot {
   const Evaluation* evaluation = nullptr; ///< contact forces, modes, friction states
   const double* row_force = nullptr;      ///< multiplier of every bilateral row
   const double* friction_force = nullptr; ///< wrench of every friction element along its rows
-  const double* memory = nullptr;         ///< constants of driven rows and anchors (State::memory)
+  const Impact* impacts = nullptr;        ///< State::impacts
   double dissipated = 0.0, work = 0.0;    ///< dissipated energy and work of the whole system since the start, J
   const Integrals* integrals = nullptr;   ///< null outside a run; integrals are then zero
 };
@@ -77,6 +83,14 @@ struct ChannelText {
   ChannelText(const std::string& meaning_) : meaning(meaning_) {}
 };
 
+/// Quantities by which any element's channels are found, whatever its kind calls them.
+enum class ChannelRole : std::uint8_t {
+  none,
+  margin,       ///< of a joint: capacity over what is in use; below 1 it does not hold
+  friction_use, ///< force over the largest that friction holds at the same instant
+  strength_use, ///< force over the strength at which the element breaks
+};
+
 /// A named result of a run: a scalar function of the snapshot.
 struct Channel {
   std::string name;                             ///< "<element>.<quantity>"
@@ -88,6 +102,7 @@ struct Channel {
   bool has_extremes = true;          ///< false if the value can be infinite
   std::string sign = {}, codes = {}; ///< as in ChannelText
   bool is_on_request = false;        ///< computed only if a model requests it
+  ChannelRole role = ChannelRole::none;
 };
 
 /// A power that a run integrates over time because a channel needs the integral (Snapshot::integrals).
@@ -126,6 +141,21 @@ struct FrictionUnit {
   int row = 0;                               ///< index of its first component in Snapshot::friction_force
   int first_event = 0;                       ///< index of its first event function
   int element = 0;                           ///< index in System::element_names
+
+  /// Returns the index of one of its event functions.
+  [[nodiscard]] int slot(FrictionWatch watch) const { return first_event + static_cast<int>(watch); }
+  /// Returns which of its event functions has this index.
+  [[nodiscard]] FrictionWatch watch_of(int slot) const { return static_cast<FrictionWatch>(slot - first_event); }
+};
+
+/// Characteristic length and times of a scene. Thresholds such as "many events in a short time" scale with them, so that a scaled model gets
+/// the same result. Some tolerances do not use them yet (KNOWN_ISSUES.md).
+struct SceneUnits {
+  double length = 1.0;   ///< largest radius of gyration √(J/m), m
+  double duration = 1.0; ///< duration of the run, s
+  double rate = 1.0;     ///< √(g/length), 1/s; π/duration without gravity
+
+  [[nodiscard]] double time() const { return 1.0 / rate; }
 };
 
 /// A compiled model. It does not refer to the model and may be used by several threads at once.
@@ -155,8 +185,10 @@ public:
   std::vector<double> breakpoints;                             ///< breakpoints of all signals in use, ascending, s
   std::vector<double> motion_breakpoints;                      ///< breakpoints of signals with SignalUse::motion, ascending, s
   double drives_end = std::numeric_limits<double>::infinity(); ///< time at which a drive would jump, s; no run may continue beyond it
-  std::vector<double> initial_memory;                          ///< initial State::memory
-  std::vector<int> memory_elements;                            ///< element of each number in initial_memory
+  std::vector<RowBase> initial_bases;                          ///< initial State::bases
+  std::vector<int> base_elements;                              ///< element of each of initial_bases
+  std::vector<Impact> initial_impacts;                         ///< initial State::impacts: none yet
+  std::vector<int> impact_elements;                            ///< element of each of initial_impacts
   std::vector<double> initial_inner;                           ///< initial State::inner
   std::vector<int> inner_elements;                             ///< element of each inner state
   std::vector<const ForceGroup*> inner_groups;                 ///< groups with inner states
@@ -193,7 +225,7 @@ private:
 /// Computes the motions of all bodies from q and v; `motion` has one entry per body.
 void place_bodies(const std::vector<double>& q, const std::vector<double>& v, std::vector<Motion<double>>& motion);
 
-/// Sets the constants of driven rows in `state`.memory so that the drives start from the pose and velocity of `state`. `begins` restricts
+/// Sets the bases of driven rows in `state` so that the drives start from the pose and velocity of `state`. `begins` restricts
 /// this to the marked elements (index as in System::element_names); null: all.
 void start_drives(const System& system, State& state, const std::vector<char>* begins = nullptr);
 
@@ -261,8 +293,10 @@ public:
   /// the line through marker b with `normal`, in the marker's axes. `remedy` says, as a clause, how a model gives the face an end. Without an
   /// outline of the part nothing is added.
   void add_endless_face(int contact, int a, std::vector<Vec2> points, const std::string& b, const Vec2& normal, std::string remedy);
-  /// Reserves two numbers in State::memory, a base and its rate. Returns the index of the base.
-  int add_memory(double base = 0.0, double base_rate = 0.0);
+  /// Adds a base of rows of the current element, with this initial value. Returns its index in State::bases.
+  int add_base(double value = 0.0);
+  /// Adds the impacts of the current element. Returns their index in State::impacts.
+  int add_impacts();
   /// Adds one internal state with initial value `start` for an element of `group`. Returns its index.
   int add_inner(const ForceGroup& group, double start);
   /// Adds rows of the current element; `is_rigid` and `coordinate` as in RowBlock.

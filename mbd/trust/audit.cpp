@@ -56,7 +56,7 @@ double power_of_friction(const Snapshot& s, const System& system, std::size_t f)
   double rate[3] = {0, 0, 0}, power = 0.0;
   for (int i = 0; i < n; ++i) {
     rate[i] = evaluate_row<false>(rows[i], s.motion).rate;
-    if (rows[i].drive) rate[i] -= row_target(rows[i], s.memory, s.t).rate;
+    if (rows[i].drive) rate[i] -= row_target(rows[i], s.evaluation->bases, s.t).rate;
     power += s.friction_force[unit.row + i] * rate[i];
   }
   if (state.phase == FrictionPhase::slip) return power;
@@ -120,10 +120,6 @@ double largest_pull(const Snapshot& s, int count) {
   double pull = 0.0;
   for (int i = 0; i < count; ++i) pull = std::max(pull, -s.evaluation->contact_force[i]);
   return pull;
-}
-
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
 std::string element_of(const Channel& channel) {
@@ -301,7 +297,7 @@ double audited_power(const RunResult& run) {
   for (std::size_t row = 0; row < t.size(); ++row) {
     double sum = 0.0;
     for (std::size_t c = 0; c < t.channels().size(); ++c)
-      if (is_audit_channel(*t.channels()[c]) && ends_with(t.channels()[c]->name, k_pushes)) sum += std::abs(t.value(row, c));
+      if (is_audit_channel(*t.channels()[c]) && t.channels()[c]->name.ends_with(k_pushes)) sum += std::abs(t.value(row, c));
     most = std::max(most, sum);
   }
   return most;
@@ -315,10 +311,10 @@ std::vector<AuditFinding> audit(const System& system, const RunResult& run, doub
   const double power = energy_scale(system, run) / duration + 1e-300, force = largest_force(run) + 1e-300;
   for (std::size_t c = 0; c < t.channels().size(); ++c) {
     const Channel& channel = *t.channels()[c];
-    if (!is_audit_channel(channel) || ends_with(channel.name, k_shares) || ends_with(channel.name, k_unknown)) continue;
+    if (!is_audit_channel(channel) || channel.name.ends_with(k_shares) || channel.name.ends_with(k_unknown)) continue;
     AuditFinding finding{"a contact pulls", element_of(channel), 0.0, 0.0, share * force};
-    if (ends_with(channel.name, k_pushes)) finding = {"friction does positive work", element_of(channel), 0.0, 0.0, share * power};
-    if (ends_with(channel.name, k_overload)) finding = {"friction exceeds its bound", element_of(channel), 0.0, 0.0, share};
+    if (channel.name.ends_with(k_pushes)) finding = {"friction does positive work", element_of(channel), 0.0, 0.0, share * power};
+    if (channel.name.ends_with(k_overload)) finding = {"friction exceeds its bound", element_of(channel), 0.0, 0.0, share};
     for (std::size_t row = 0; row < t.size(); ++row) {
       finding.t = t.times()[row];
       finding.value = t.value(row, c);

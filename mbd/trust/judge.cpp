@@ -44,13 +44,13 @@ Judgement judge(const Model& model, const System& system, const RunResult& resul
   return judgement;
 }
 
-std::vector<std::string> channels_of_trust(const Model& model) {
-  std::vector<std::string> names;
+std::vector<TrustChannel> channels_of_trust(const Model& model) {
+  std::vector<TrustChannel> channels;
   for (const ElementEntry& entry : model.elements) {
     if (!entry.kind->channels_of_trust) continue;
-    for (const std::string& name : entry.kind->channels_of_trust(*entry.element)) names.push_back(name);
+    for (TrustChannel& channel : entry.kind->channels_of_trust(*entry.element)) channels.push_back(std::move(channel));
   }
-  return names;
+  return channels;
 }
 
 } // namespace steplap

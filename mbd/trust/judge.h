@@ -11,8 +11,8 @@ namespace steplap {
 /// stopped early, empty if it reached its end.
 [[nodiscard]] Judgement judge(const Model& model, const System& system, const RunResult& result, const std::string& failure);
 
-/// Returns the names of the channels whose extremes decide whether a run can be trusted. A caller that omits channels must keep these;
+/// Returns the channels whose extremes decide whether a run can be trusted. A caller that omits channels must keep these;
 /// otherwise untrustworthy runs pass as trusted.
-[[nodiscard]] std::vector<std::string> channels_of_trust(const Model& model);
+[[nodiscard]] std::vector<TrustChannel> channels_of_trust(const Model& model);
 
 } // namespace steplap

@@ -43,7 +43,7 @@ public:
     e_.t = 0.1;
     e_.mode = state_.mode.data();
     e_.friction = state_.friction.data();
-    e_.memory = state_.memory.data();
+    e_.bases = state_.bases.data();
     e_.inner = state_.inner.data();
     e_.scratch = scratch_.pointers();
     choose_places();

@@ -204,7 +204,7 @@ Probability largest_slip(const Assessment& a) {
 }
 
 Reason judge_criterion(const DecisionCriterion& c, const Assessment& a, const VoyageSummary& s) {
-  if (c.quantity == "peak" || c.quantity == "velocity_change") return judge_reading(c, a);
+  if (c.basis == CriterionBasis::reading) return judge_reading(c, a);
   const std::string unknown = unknown_of(c, a, s);
   const double demand = s.least_margin >= 0.0 ? 1.0 / s.least_margin : 0.0; // over capacity, of the joint nearest to slip; NaN: unknown
   if (c.quantity == "slip")
@@ -269,7 +269,7 @@ std::vector<Reason> reasons_of(const Assessment& a, const VoyageSummary& s) {
 Decision decision_by_criteria(const Assessment& assessment, const VoyageSummary& summary) {
   Decision worst = Decision::energise;
   for (const DecisionCriterion& c : assessment.criteria.criteria)
-    if (!c.quantity.ends_with("probability")) worst = std::max(worst, judge_criterion(c, assessment, summary).outcome);
+    if (c.basis != CriterionBasis::probability) worst = std::max(worst, judge_criterion(c, assessment, summary).outcome);
   return worst;
 }
 

@@ -35,11 +35,11 @@ template <class Work> double nanoseconds(long count, const Work& work) {
 std::vector<double> time_inputs(const System& system, const State& state, const Layout& layout) {
   std::vector<double> inputs;
   for (const Lock& lock : layout.locks) {
-    const SignalJet target = row_target(system.rows[lock.row], state.memory.data(), state.t);
+    const SignalJet target = row_target(system.rows[lock.row], state.bases.data(), state.t);
     inputs.insert(inputs.end(), {target.value + lock.offset, target.rate, target.acceleration});
   }
   for (const int r : layout.driven_rows) {
-    const SignalJet target = row_target(*layout.active[r].spec, state.memory.data(), state.t);
+    const SignalJet target = row_target(*layout.active[r].spec, state.bases.data(), state.t);
     inputs.insert(inputs.end(), {target.acceleration, target.rate});
   }
   return inputs;

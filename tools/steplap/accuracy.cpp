@@ -1,4 +1,4 @@
-#include "tools/steplap/accuracy.h"
+#include "tools/steplap/commands.h"
 
 #include "mbd/base/number_text.h"
 #include "mbd/io/atomic_file.h"

@@ -1,5 +1,6 @@
 #include "tools/steplap/assess.h"
 
+#include "tools/steplap/commands.h"
 #include "tools/steplap/static_proof.h"
 
 #include <algorithm>

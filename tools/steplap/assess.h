@@ -20,8 +20,6 @@ struct AssessOptions : ReadingOptions {
 
 /// Returns the command; `work` executes it.
 [[nodiscard]] Command assess_command(const std::function<ExitCode(const AssessOptions& options, Console& console)>& work);
-/// Returns the command for the program `steplap`: it executes --static and prints help.
-[[nodiscard]] Command assess_command();
 /// Returns true if these arguments must be passed to the study program.
 [[nodiscard]] bool asks_for_assessment(const std::vector<std::string>& arguments);
 

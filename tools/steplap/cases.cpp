@@ -1,4 +1,4 @@
-#include "tools/steplap/cases.h"
+#include "tools/steplap/commands.h"
 
 #include "mbd/run/findings.h"
 #include "mbd/run/load_cases.h"

@@ -1,4 +1,4 @@
-#include "tools/steplap/channels.h"
+#include "tools/steplap/commands.h"
 
 #include "mbd/base/name_pattern.h"
 #include "mbd/io/csv.h"

@@ -1,4 +1,4 @@
-#include "tools/steplap/check.h"
+#include "tools/steplap/commands.h"
 
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"

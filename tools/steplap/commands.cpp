@@ -1,27 +1,5 @@
 #include "tools/steplap/commands.h"
 
-#include "tools/steplap/accuracy.h"
-#include "tools/steplap/assess.h"
-#include "tools/steplap/cases.h"
-#include "tools/steplap/channels.h"
-#include "tools/steplap/check.h"
-#include "tools/steplap/core.h"
-#include "tools/steplap/diff.h"
-#include "tools/steplap/elements.h"
-#include "tools/steplap/equilibrium.h"
-#include "tools/steplap/explore.h"
-#include "tools/steplap/help.h"
-#include "tools/steplap/joint.h"
-#include "tools/steplap/modes.h"
-#include "tools/steplap/new.h"
-#include "tools/steplap/plot.h"
-#include "tools/steplap/record.h"
-#include "tools/steplap/report.h"
-#include "tools/steplap/schema.h"
-#include "tools/steplap/show.h"
-#include "tools/steplap/simulate.h"
-#include "tools/steplap/study.h"
-
 namespace steplap {
 
 std::vector<Command> all_commands() {

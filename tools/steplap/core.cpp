@@ -1,4 +1,4 @@
-#include "tools/steplap/core.h"
+#include "tools/steplap/commands.h"
 
 #include "mbd/base/number_text.h"
 #include "mbd/run/findings.h"

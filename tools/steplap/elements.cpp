@@ -1,4 +1,4 @@
-#include "tools/steplap/elements.h"
+#include "tools/steplap/commands.h"
 
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/reference.h"

@@ -1,4 +1,4 @@
-#include "tools/steplap/equilibrium.h"
+#include "tools/steplap/commands.h"
 
 #include "mbd/base/shown_text.h"
 #include "mbd/run/edges.h"

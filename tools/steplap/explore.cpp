@@ -1,4 +1,4 @@
-#include "tools/steplap/explore.h"
+#include "tools/steplap/commands.h"
 
 #include "mbd/io/read_input.h"
 #include "tools/explore/explorer.h"

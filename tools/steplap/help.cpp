@@ -1,4 +1,4 @@
-#include "tools/steplap/help.h"
+#include "tools/steplap/commands.h"
 
 #include <memory>
 

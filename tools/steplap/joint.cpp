@@ -1,4 +1,4 @@
-#include "tools/steplap/joint.h"
+#include "tools/steplap/commands.h"
 
 #include "elements/step_lap/joint_view.h"
 #include "mbd/base/number_text.h"

@@ -1,4 +1,4 @@
-#include "tools/steplap/modes.h"
+#include "tools/steplap/commands.h"
 
 #include "mbd/io/csv.h"
 #include "mbd/rest/modes.h"

@@ -1,8 +1,10 @@
 #include "tools/steplap/new.h"
 
 #include "mbd/io/reader.h"
+#include "mbd/run/catalogue.h"
 #include "mbd/run/findings.h"
 #include "mbd/run/run.h"
+#include "tools/steplap/commands.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/output_files.h"
 #include "transformer/program.h"

@@ -31,6 +31,4 @@ struct ModelTemplate {
 
 [[nodiscard]] const std::vector<ModelTemplate>& model_templates();
 
-[[nodiscard]] Command new_command();
-
 } // namespace steplap

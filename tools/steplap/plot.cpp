@@ -1,4 +1,4 @@
-#include "tools/steplap/plot.h"
+#include "tools/steplap/commands.h"
 
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/atomic_file.h"

@@ -1,4 +1,4 @@
-#include "tools/steplap/record.h"
+#include "tools/steplap/commands.h"
 
 #include "mbd/base/limits.h"
 #include "mbd/base/number_text.h"

@@ -4,6 +4,7 @@
 #include "tools/pages/assessment_page.h"
 #include "tools/pages/report_page.h"
 #include "tools/pages/sheet_page.h"
+#include "tools/steplap/commands.h"
 #include "tools/steplap/output_files.h"
 
 #include <algorithm>

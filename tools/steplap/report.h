@@ -5,8 +5,6 @@
 
 namespace steplap {
 
-[[nodiscard]] Command report_command();
-
 /// Writes the report of the runs in `folders` to `file`. Throws UsageError, FileError.
 void write_report(const std::vector<std::string>& folders, const std::string& file, bool is_overwriting);
 

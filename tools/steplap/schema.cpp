@@ -1,4 +1,4 @@
-#include "tools/steplap/schema.h"
+#include "tools/steplap/commands.h"
 
 #include "mbd/io/json_schema.h"
 #include "tools/steplap/study.h"

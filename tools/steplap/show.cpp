@@ -1,4 +1,4 @@
-#include "tools/steplap/show.h"
+#include "tools/steplap/commands.h"
 
 #include "tools/steplap/overview_screen.h"
 #include "tools/steplap/run_screen.h"

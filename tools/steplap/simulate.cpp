@@ -1,4 +1,4 @@
-#include "tools/steplap/simulate.h"
+#include "tools/steplap/commands.h"
 
 #include "mbd/base/shown_text.h"
 #include "mbd/io/units.h"

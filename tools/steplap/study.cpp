@@ -1,5 +1,7 @@
 #include "tools/steplap/study.h"
 
+#include "tools/steplap/commands.h"
+
 #include <sys/wait.h>
 #include <unistd.h>
 

@@ -11,8 +11,4 @@ int run_study_program(char** words);
 /// As above, for arguments in a vector.
 int run_study_program(const std::vector<std::string>& arguments);
 
-/// Returns the entry for the list of commands. It is never executed, because main() starts the study program before the command line is
-/// parsed.
-[[nodiscard]] Command study_command();
-
 } // namespace steplap

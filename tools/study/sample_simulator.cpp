@@ -163,10 +163,10 @@ void leave_out_others(Channel& channel, const AskedEnds& ends, const RunningExtr
   note(ends.high_races, [](RunningExtremes& race, double value) { return race.highest = std::max(race.highest, value), value; });
 }
 
-// Returns the extremes that decide whether a run can be trusted. For the margin of a joint only values below 1 matter.
-AskedEnds ends_of_trust(const std::string& channel) {
+// Returns the extremes that decide whether a run can be trusted.
+AskedEnds ends_of_trust(const TrustChannel& channel) {
   AskedEnds ends;
-  if (channel.ends_with(".margin")) ends.low_below = 1.0;
+  if (channel.is_margin) ends.low_below = 1.0;
   else ends.low = ends.high = true;
   return ends;
 }
@@ -230,9 +230,9 @@ struct SampleSimulator::SharedRunData {
         paths.push_back(path);
       }
     }
-    for (const std::string& name : channels_of_trust(completed(model.given))) {
-      channels.push_back(name);
-      extremes[name].add(ends_of_trust(name));
+    for (const TrustChannel& channel : channels_of_trust(completed(model.given))) {
+      channels.push_back(channel.name);
+      extremes[channel.name].add(ends_of_trust(channel));
     }
     numbers.resize(settings.size());
     variants = std::make_unique<Variants>(model.given, std::move(paths), wanted());

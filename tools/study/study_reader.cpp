@@ -266,23 +266,28 @@ private:
 
   // `what` is one of the field's choices: other values have been rejected, and `measure` is then unchanged.
   static void set_measure(Response& r) {
-    static const std::map<std::string, Measure> measures = {{"highest", Measure::highest},
-                                                            {"lowest", Measure::lowest},
-                                                            {"largest", Measure::largest_magnitude},
-                                                            {"final", Measure::final_value},
-                                                            {"initial", Measure::initial_value},
-                                                            {"mean", Measure::mean},
-                                                            {"path", Measure::path},
-                                                            {"count", Measure::event_count},
-                                                            {"time_of_first", Measure::first_event},
-                                                            {"time_of_highest", Measure::highest},
-                                                            {"time_of_lowest", Measure::lowest},
-                                                            {"time_of_largest", Measure::largest_magnitude},
-                                                            {"verdict", Measure::verdict},
-                                                            {"reserve", Measure::reserve}};
+    struct Named {
+      Measure measure;
+      bool takes_time = false; // of the extreme, instead of its value
+    };
+    static const std::map<std::string, Named> measures = {{"highest", {Measure::highest}},
+                                                          {"lowest", {Measure::lowest}},
+                                                          {"largest", {Measure::largest_magnitude}},
+                                                          {"final", {Measure::final_value}},
+                                                          {"initial", {Measure::initial_value}},
+                                                          {"mean", {Measure::mean}},
+                                                          {"path", {Measure::path}},
+                                                          {"count", {Measure::event_count}},
+                                                          {"time_of_first", {Measure::first_event}},
+                                                          {"time_of_highest", {Measure::highest, true}},
+                                                          {"time_of_lowest", {Measure::lowest, true}},
+                                                          {"time_of_largest", {Measure::largest_magnitude, true}},
+                                                          {"verdict", {Measure::verdict}},
+                                                          {"reserve", {Measure::reserve}}};
     const auto found = measures.find(r.what);
-    if (found != measures.end()) r.measure = found->second;
-    r.takes_time = is_extreme(r.measure) && r.what.starts_with("time_of_");
+    if (found == measures.end()) return;
+    r.measure = found->second.measure;
+    r.takes_time = found->second.takes_time;
   }
 
   void check_response(const Node& entry, Response& r) {

@@ -13,15 +13,16 @@ namespace steplap::assess {
 
 namespace {
 
-/// A quantity for criteria, the unit of its limit, and whether it takes 'at_most', 'at_least' or no limit.
+/// A quantity for criteria, the unit of its limit, whether it takes 'at_most', 'at_least' or no limit, and where it comes from.
 struct CriterionQuantity {
   const char* name;
   const char* unit;
   enum class Limit { none, most, least } limit;
+  CriterionBasis basis = CriterionBasis::runs;
 };
 using Limit = CriterionQuantity::Limit;
-constexpr CriterionQuantity k_quantities[] = {{"peak", "m/s^2", Limit::most},
-                                              {"velocity_change", "m/s", Limit::most},
+constexpr CriterionQuantity k_quantities[] = {{"peak", "m/s^2", Limit::most, CriterionBasis::reading},
+                                              {"velocity_change", "m/s", Limit::most, CriterionBasis::reading},
                                               {"slip", "", Limit::none},
                                               {"slid", "m", Limit::most},
                                               {"overlap_left", "", Limit::least},
@@ -29,8 +30,8 @@ constexpr CriterionQuantity k_quantities[] = {{"peak", "m/s^2", Limit::most},
                                               {"comes_apart", "", Limit::none},
                                               {"lift", "", Limit::none},
                                               {"acceptance", "", Limit::none},
-                                              {"slip_probability", "", Limit::most},
-                                              {"damage_probability", "", Limit::most}};
+                                              {"slip_probability", "", Limit::most, CriterionBasis::probability},
+                                              {"damage_probability", "", Limit::most, CriterionBasis::probability}};
 
 std::vector<std::string> quantity_names() {
   std::vector<std::string> names;
@@ -109,8 +110,8 @@ private:
     if (q.limit != Limit::most && !c.at_most_text.empty()) add("at_most", "'" + c.quantity + "' takes no 'at_most'");
     if (q.limit != Limit::least && !c.at_least_text.empty()) add("at_least", "'" + c.quantity + "' takes no 'at_least'");
     if (c.quantity != "peak" && c.bandwidth != "record") add("bandwidth", "only a peak has a bandwidth");
-    if (!c.quantity.starts_with("peak") && c.quantity != "velocity_change" && c.axis != "any")
-      add("axis", "only what the recorder read has an axis");
+    c.basis = q.basis;
+    if (c.basis != CriterionBasis::reading && c.axis != "any") add("axis", "only what the recorder read has an axis");
     c.at_most = limit(c.at_most_text, q.unit, at("at_most"), c);
     c.at_least = limit(c.at_least_text, q.unit, at("at_least"), c);
   }

@@ -22,11 +22,15 @@ enum class Decision { energise, open, inspect, send_back };
 /// Returns "energise", "open", "inspect" or "return".
 [[nodiscard]] const char* name_of(Decision decision);
 
+/// Where the quantity of a criterion comes from: the recorder's reading, the runs of the voyage, or their repetition with uncertain values.
+enum class CriterionBasis { reading, runs, probability };
+
 /// One criterion.
 struct DecisionCriterion {
   std::string name, quantity;
-  std::string axis = "any";         ///< axis of the record: "any", "x", "y" or "z"
-  std::string bandwidth = "record"; ///< for a peak: "record", "100 Hz" (CFC 60) or "17 Hz" (CFC 10)
+  CriterionBasis basis = CriterionBasis::runs; ///< of `quantity`
+  std::string axis = "any";                    ///< axis of the record: "any", "x", "y" or "z"
+  std::string bandwidth = "record";            ///< for a peak: "record", "100 Hz" (CFC 60) or "17 Hz" (CFC 10)
   std::string at_most_text, at_least_text;
   std::optional<double> at_most, at_least; ///< SI
   std::string outcome = "inspect";         ///< outcome if it is not met: "inspect" or "return"

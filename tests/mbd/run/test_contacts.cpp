@@ -58,7 +58,7 @@ double gap_of(const LoadedModel& loaded, const Vec3& by) {
   Snapshot snapshot;
   snapshot.motion = statics.motion().data();
   snapshot.evaluation = &statics.evaluation();
-  snapshot.memory = state.memory.data();
+  snapshot.impacts = state.impacts.data();
   return system.find_channel("touch.gap")->value(snapshot);
 }
 

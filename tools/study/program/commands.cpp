@@ -6,7 +6,7 @@
 #include "mbd/io/csv.h"
 #include "mbd/model/model_path.h"
 #include "tools/steplap/command_line.h"
-#include "tools/steplap/help.h"
+#include "tools/steplap/commands.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/output_files.h"
 #include "tools/study/export.h"
