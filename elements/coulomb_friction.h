@@ -2,7 +2,7 @@
 // its contacts. The elements that use it (coulomb_stick, polygon_contact) define the rows and the contact points.
 #pragma once
 
-#include "elements/bounded_friction.h"
+#include "mbd/system/bounded_friction.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace steplap {
 
-class CoulombFriction : public FrictionElement {
+class CoulombFriction : public BoundedFriction {
 public:
   // Dead band of the change of foot, rad. Level feet are the normal state at rest, and rounding must not change the foot.
   static constexpr double k_foot_dead_band = 1e-13;
@@ -27,7 +27,6 @@ public:
                                                  ///< becomes zero
   double damping = 0.0, mass = 0.0, lever = 0.0; ///< of the contacts, N s/m; of the lighter body, kg; distance from its centre, m
 
-  [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState& state) const override { return &feet[state.foot]; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[feet[0].a] = is_used[feet[0].b] = 1; }
   template <class S> [[nodiscard]] S normal_force(const EvaluationData<S>& e) const { return greatest_of(S(0.0), sum_of_forces(e)); }
@@ -44,8 +43,8 @@ public:
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double*, double* wrench) const override {
     wrench[0] = sliding_force(e, state);
   }
-  [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
-    return mu_static * normal_force(e) * std::abs(rate[0]);
+  [[nodiscard]] WrenchBounds bounds(const Evaluation& e, const FrictionState&, bool kinetic) const override {
+    return WrenchBounds::symmetric((kinetic ? mu_kinetic : mu_static) * normal_force(e));
   }
   void stick_events(const Evaluation& e, const FrictionState&, const double* wrench, double* event_value) const override {
     bound_events<double>(e, wrench, event_value);
@@ -61,9 +60,6 @@ public:
     }
     event_value[2] = turn_to_other_foot(e, state);
     return true;
-  }
-  void set_onset_direction(const Evaluation&, FrictionState& state, const double* wrench) const override {
-    state.sign = wrench[0] > 0.0 ? -1 : 1;
   }
   [[nodiscard]] double contact_point_event(const Evaluation& e, const FrictionState& state) const override {
     return turn_to_other_foot(e, state);
@@ -86,10 +82,6 @@ public:
     scale.lever = lever;
     if (mu_kinetic > 1.0 && damping > 0.0) scale.speed = k_floor_acceleration * mass / ((mu_kinetic - 1.0) * damping);
     return scale;
-  }
-  [[nodiscard]] BlockSolution solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
-                                          bool is_kinetic) const override {
-    return block_within((is_kinetic ? mu_kinetic : mu_static) * normal_force(e), a[0], b[0]);
   }
 
 private:

@@ -1,8 +1,8 @@
 #include "elements/joint_friction.h"
 
-#include "elements/bounded_friction.h"
 #include "elements/share_channel.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/system/bounded_friction.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -76,14 +76,13 @@ bool is_pressure(const JointFriction& e, const Signal* signal, SystemBuilder& bu
 
 // Friction of one coordinate. The bound for sliding at rate v is drags + (holds − drags)/(1 + (v/v_s)²), with Stribeck velocity v_s (Hess
 // and Soom, 1990), plus a viscous part. It is a smooth even function of v, so a step may extend beyond the end of a slip.
-class CoordinateFriction final : public FrictionElement {
+class CoordinateFriction final : public BoundedFriction {
 public:
   RowSpec row;
   double holds = 0.0, drags = 0.0, viscous = 0.0;
   double per_stribeck_velocity = 0.0; ///< 1/v_s, s/m or s/rad; 0: the bound does not depend on velocity
   const Signal* signal = nullptr;     ///< factor on all of them, or null
 
-  [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
   // Called at events only. The friction is free during pieces of the signal that are zero throughout, which begin and end with an event.
@@ -91,8 +90,8 @@ public:
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate, double* wrench) const override {
     wrench[0] = sliding_force(rate[0], state, share(e.t));
   }
-  [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
-    return holds * share(e.t) * std::abs(rate[0]);
+  [[nodiscard]] WrenchBounds bounds(const Evaluation& e, const FrictionState&, bool kinetic) const override {
+    return WrenchBounds::symmetric(share(e.t) * (kinetic ? sliding_bound(sliding_rate(e)) : holds));
   }
   // While sliding, the capacity contains the viscous part in addition to the static bound.
   [[nodiscard]] double gauge(const Evaluation& e, const FrictionState& state, const double* wrench, double* normal) const override {
@@ -116,13 +115,6 @@ public:
     }
     event_value[2] = 1.0;
     return true;
-  }
-  void set_onset_direction(const Evaluation&, FrictionState& state, const double* wrench) const override {
-    state.sign = wrench[0] > 0.0 ? -1 : 1;
-  }
-  [[nodiscard]] BlockSolution solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
-                                          bool is_kinetic) const override {
-    return block_within(share(e.t) * (is_kinetic ? sliding_bound(sliding_rate(e)) : holds), a[0], b[0]);
   }
 
 private:

@@ -1,8 +1,8 @@
 #include "elements/machinery/buffer.h"
 
-#include "elements/bounded_friction.h"
 #include "elements/spring_laws.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/system/bounded_friction.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -17,14 +17,13 @@ using CurveGroup = LawGroup<AxisMeasure, TabulatedSpring>;
 
 // Friction whose bound is half of the distance between the curves. The bound and the spring's table have the same corners, which are
 // changes of the spring's mode; for a given mode both are linear.
-class BufferFriction final : public FrictionElement {
+class BufferFriction final : public BoundedFriction {
 public:
   RowSpec row;
   PiecewiseLinear bound; ///< bound, N, as a function of the change of the row since the buffer was free, as in the spring's table
   double free = 0.0;     ///< value of the row at first contact, m
   int unit = 0;          ///< unit of the spring
 
-  [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
@@ -33,8 +32,8 @@ public:
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double*, double* wrench) const override {
     wrench[0] = -state.sign * bound_at<double>(e);
   }
-  [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
-    return std::max(0.0, bound_at<double>(e)) * std::abs(rate[0]);
+  [[nodiscard]] WrenchBounds bounds(const Evaluation& e, const FrictionState&, bool /*kinetic*/) const override {
+    return WrenchBounds::symmetric(std::max(0.0, bound_at<double>(e)));
   }
   void stick_events(const Evaluation& e, const FrictionState&, const double* wrench, double* event_value) const override {
     bound_events<double>(e, wrench, event_value);
@@ -50,13 +49,6 @@ public:
     }
     event_value[2] = 1.0;
     return true;
-  }
-  void set_onset_direction(const Evaluation&, FrictionState& state, const double* wrench) const override {
-    state.sign = wrench[0] > 0.0 ? -1 : 1;
-  }
-  [[nodiscard]] BlockSolution solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
-                                          bool) const override {
-    return block_within(std::max(0.0, bound_at<double>(e)), a[0], b[0]);
   }
 
 private:

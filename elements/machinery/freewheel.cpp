@@ -1,6 +1,6 @@
 #include "elements/machinery/freewheel.h"
 
-#include "elements/bounded_friction.h"
+#include "mbd/system/bounded_friction.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_way_lock.h"
 #include "mbd/system/system.h"
@@ -23,16 +23,13 @@ public:
 
   [[nodiscard]] int refuses() const override { return low <= -k_without_bound ? 1 : high >= k_without_bound ? -1 : 0; }
   [[nodiscard]] double drag() const override { return std::min(-low, high); }
-  [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
   [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
   void slip_wrench(const Evaluation&, const FrictionState& state, const double*, double* wrench) const override {
     wrench[0] = bound(state);
   }
-  [[nodiscard]] double support(const Evaluation&, const FrictionState&, const double* rate) const override {
-    return rate[0] > 0.0 ? -low * rate[0] : -high * rate[0];
-  }
+  [[nodiscard]] WrenchBounds bounds(const Evaluation&, const FrictionState&, bool /*kinetic*/) const override { return {low, high, rest}; }
   [[nodiscard]] double gauge(const Evaluation&, const FrictionState&, const double* wrench, double* normal) const override {
     const double bound = wrench[0] < 0.0 ? std::min(low, -rest) : std::max(high, rest);
     normal[0] = 1.0 / bound;
@@ -56,15 +53,6 @@ public:
   // Slips at the nearer bound; the other one is far away.
   void set_onset_direction(const Evaluation&, FrictionState& state, const double* wrench) const override {
     state.sign = wrench[0] > 0.5 * (low + high) ? -1 : 1;
-  }
-  [[nodiscard]] BlockSolution solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b, bool) const override {
-    constexpr double k_no_motion = 1e-12; // rad/s or rad/s²: rounding of an angle that a drive keeps at rest
-    BlockSolution block;
-    const double wanted = a[0] > 0.0 ? -b[0] / a[0] : (b[0] > 0.0 ? low : high);
-    block.sticks = a[0] > 0.0 ? wanted >= least() && wanted <= most() : std::abs(b[0]) <= k_no_motion;
-    block.wrench[0] = std::clamp(wanted, low, high);
-    block.direction[0] = wanted > high ? -1.0 : 1.0;
-    return block;
   }
 
 private:

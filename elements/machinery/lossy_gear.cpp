@@ -1,6 +1,6 @@
 #include "elements/machinery/lossy_gear.h"
 
-#include "elements/bounded_friction.h"
+#include "mbd/system/bounded_friction.h"
 #include "mbd/system/system.h"
 #include "mbd/system/turn_table.h"
 
@@ -90,21 +90,20 @@ private:
   }
 };
 
-class ToothFriction final : public FrictionElement {
+class ToothFriction final : public BoundedFriction {
 public:
   RowSpec row;
   MeshEntry mesh;
   double loss = 0.0; ///< ν
 
-  [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[mesh.a] = is_used[mesh.b] = is_used[mesh.carrier] = 1; }
   [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double*, double* wrench) const override {
     wrench[0] = -state.sign * bound<double>(e);
   }
-  [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
-    return std::max(0.0, bound<double>(e)) * std::abs(rate[0]);
+  [[nodiscard]] WrenchBounds bounds(const Evaluation& e, const FrictionState&, bool /*kinetic*/) const override {
+    return WrenchBounds::symmetric(std::max(0.0, bound<double>(e)));
   }
   void stick_events(const Evaluation& e, const FrictionState&, const double* wrench, double* event_value) const override {
     bound_events<double>(bound<double>(e), wrench[0], event_value);
@@ -120,13 +119,6 @@ public:
     }
     event_value[2] = 1.0;
     return true;
-  }
-  void set_onset_direction(const Evaluation&, FrictionState& state, const double* wrench) const override {
-    state.sign = wrench[0] > 0.0 ? -1 : 1;
-  }
-  [[nodiscard]] BlockSolution solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
-                                          bool) const override {
-    return block_within(std::max(0.0, bound<double>(e)), a[0], b[0]);
   }
 
 private:

@@ -1,7 +1,7 @@
 #include "elements/machinery/skate.h"
 
-#include "elements/bounded_friction.h"
 #include "elements/share_channel.h"
+#include "mbd/system/bounded_friction.h"
 #include "mbd/system/system.h"
 
 #include <cmath>
@@ -12,20 +12,19 @@ namespace steplap {
 namespace {
 
 // Friction across the direction of motion, with constant bounds.
-class SidewaysGrip final : public FrictionElement {
+class SidewaysGrip final : public BoundedFriction {
 public:
   RowSpec row;
   double grip = 0.0, drags = 0.0; ///< N
 
-  [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
   [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
   void slip_wrench(const Evaluation&, const FrictionState& state, const double*, double* wrench) const override {
     wrench[0] = -state.sign * drags;
   }
-  [[nodiscard]] double support(const Evaluation&, const FrictionState&, const double* rate) const override {
-    return grip * std::abs(rate[0]);
+  [[nodiscard]] WrenchBounds bounds(const Evaluation&, const FrictionState&, bool kinetic) const override {
+    return WrenchBounds::symmetric(kinetic ? drags : grip);
   }
   void stick_events(const Evaluation&, const FrictionState&, const double* wrench, double* event_value) const override {
     bound_events<double>(grip, wrench[0], event_value);
@@ -41,13 +40,6 @@ public:
     }
     event_value[2] = 1.0;
     return true;
-  }
-  void set_onset_direction(const Evaluation&, FrictionState& state, const double* wrench) const override {
-    state.sign = wrench[0] > 0.0 ? -1 : 1;
-  }
-  [[nodiscard]] BlockSolution solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b,
-                                          bool is_kinetic) const override {
-    return block_within(is_kinetic ? drags : grip, a[0], b[0]);
   }
 };
 

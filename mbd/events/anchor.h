@@ -1,7 +1,6 @@
 // Stores the position at which a friction element begins to stick. Its rows keep the values of that pose as targets.
 #pragma once
 
-#include "mbd/system/one_sided_row.h"
 #include "mbd/system/system.h"
 
 namespace steplap {
@@ -9,7 +8,7 @@ namespace steplap {
 /// Anchors the rows of friction element f at the pose of `motion`; each row has its own base.
 inline void anchor_friction(const System& system, State& state, int f, const Motion<double>* motion) {
   const FrictionElement& friction = *system.frictions[f].friction;
-  if (one_sided_row(friction)) return; // a rope is held at its length, whatever the pose
+  if (system.frictions[f].rope) return; // a rope is held at its length, whatever the pose
   const RowSpec* const rows = friction.rows(state.friction[f]);
   for (int r = 0; r < friction.dimension(); ++r)
     if (rows[r].base >= 0) state.bases[rows[r].base].value = evaluate_row<false>(rows[r], motion).value;

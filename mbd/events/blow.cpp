@@ -64,11 +64,11 @@ ImpactElements struck_in(const System& system, const State& state) {
   ImpactElements struck;
   bool is_any_rope = false;
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
-    if (const OneWayLock* const lock = one_way_lock(*system.frictions[f].friction)) {
+    if (const OneWayLock* const lock = one_way_lock(system.frictions[f])) {
       const LockRate now = rate_of(*lock, state.friction[f], motion);
       struck.add(static_cast<int>(f), now.rate, now.rounding, now.refuses);
     }
-    const OneSidedRow* const rope = one_sided_row(*system.frictions[f].friction);
+    const OneSidedRow* const rope = system.frictions[f].rope;
     if (!rope) continue;
     const auto m = rope->measured(motion.data());
     const bool is_reached = rope->length - m.value <= k_same_length * rope->length;
@@ -133,7 +133,7 @@ void check_locks(const System& system, const State& state) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
-    const OneWayLock* const lock = one_way_lock(*system.frictions[f].friction);
+    const OneWayLock* const lock = one_way_lock(system.frictions[f]);
     if (!lock || !rate_of(*lock, state.friction[f], motion).is_against()) continue;
     const std::string& name = system.element_names[system.frictions[f].element];
     throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s drives turn the bodies of the one-way clutch '" + name +
@@ -191,8 +191,7 @@ bool turns_against_lock(const System& system, const State& state) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
   for (std::size_t f = 0; f < system.frictions.size(); ++f)
-    if (const OneWayLock* const lock = one_way_lock(*system.frictions[f].friction);
-        lock && rate_of(*lock, state.friction[f], motion).is_against())
+    if (const OneWayLock* const lock = one_way_lock(system.frictions[f]); lock && rate_of(*lock, state.friction[f], motion).is_against())
       return true;
   return false;
 }
@@ -203,17 +202,17 @@ void take_blow(const System& system, Dynamics& dynamics, State& state) {
   State after = state;
   free_friction(system, after);
   for (const int f : struck.elements)
-    if (one_sided_row(*system.frictions[f].friction)) after.friction[f].phase = FrictionPhase::slip;
+    if (system.frictions[f].rope) after.friction[f].phase = FrictionPhase::slip;
   const BoxSolution solution = impulses_of(system, dynamics, after, struck);
   for (std::size_t i = 0; i < struck.elements.size(); ++i) {
     const int f = struck.elements[i];
     const auto at = static_cast<Eigen::Index>(i);
-    if (const OneWayLock* const lock = one_way_lock(*system.frictions[f].friction)) {
+    if (const OneWayLock* const lock = one_way_lock(system.frictions[f])) {
       note_lock(*lock, f, solution.w[at], struck.rate[i], state, after);
       continue;
     }
     FrictionState& friction = after.friction[f];
-    const OneSidedRow& rope = *one_sided_row(*system.frictions[f].friction);
+    const OneSidedRow& rope = *system.frictions[f].rope;
     const double left_with = solution.g[at];
     const bool hardly_leaves = left_with * left_with <= 2.0 * k_shortest_flight * rope.length * std::abs(struck.acceleration[i]);
     friction.phase = solution.is_free[i] != 0 || hardly_leaves ? FrictionPhase::stick : FrictionPhase::slip;
@@ -228,7 +227,7 @@ void take_blow(const System& system, Dynamics& dynamics, State& state) {
   check_locks(system, after);
   book_blow(system, is_any_driven(system), after, state);
   for (const int f : struck.elements)
-    if (one_sided_row(*system.frictions[f].friction)) state.friction[f] = after.friction[f];
+    if (system.frictions[f].rope) state.friction[f] = after.friction[f];
 }
 
 void close_rows(const System& system, Dynamics& dynamics, State& state) {
@@ -240,15 +239,15 @@ void close_rows(const System& system, Dynamics& dynamics, State& state) {
 }
 
 bool was_struck(const System& system, std::size_t f, const std::vector<Impact>& before, const State& state) {
-  const int impact = impact_index(*system.frictions[f].friction);
+  const int impact = impact_index(system.frictions[f]);
   return impact >= 0 && before[impact].lost != state.impacts[impact].lost;
 }
 
 std::string blow_text(const System& system, std::size_t f, const std::vector<Impact>& before, const State& state) {
   if (!was_struck(system, f, before, state)) return {};
-  const FrictionElement& friction = *system.frictions[f].friction;
-  const int impact = impact_index(friction);
-  return "with " + rounded_text(state.impacts[impact].impulse, 4) + (one_sided_row(friction) ? " N s, " : " N m s, ") +
+  const FrictionUnit& unit = system.frictions[f];
+  const int impact = impact_index(unit);
+  return "with " + rounded_text(state.impacts[impact].impulse, 4) + (unit.rope ? " N s, " : " N m s, ") +
          rounded_text(state.impacts[impact].lost - before[impact].lost, 4) + " J lost";
 }
 

@@ -61,8 +61,7 @@ void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& mode
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const bool is_let_go = before[f].phase == FrictionPhase::stick && state.friction[f].phase == FrictionPhase::slip;
     const bool is_alone = !sharing || sharing->group_of(static_cast<int>(f)) < 0; // a group is released as a whole
-    if (is_let_go && is_alone && system.frictions[f].friction->dimension() == 1 && !one_sided_row(*system.frictions[f].friction))
-      begun.push_back(static_cast<int>(f));
+    if (is_let_go && is_alone && system.frictions[f].bounded && !system.frictions[f].rope) begun.push_back(static_cast<int>(f));
   }
   if (begun.size() < 2) return;
   modes.evaluate(state);
@@ -175,7 +174,7 @@ void EventHandler::start(State& state) {
   modes_.evaluate(state);
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     FrictionState& friction = state.friction[f];
-    if (one_sided_row(*system_.frictions[f].friction)) continue;
+    if (system_.frictions[f].rope) continue;
     modes_.set_anchor(state, f);
     if (friction.phase != FrictionPhase::apart && system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction))
       load(state, f);
@@ -225,7 +224,7 @@ void EventHandler::list_unit_change(int u, UnitMode from, UnitMode to, double t,
 void EventHandler::fire_friction(State& state, int f, FrictionWatch fired) {
   const FrictionUnit& unit = system_.frictions[f];
   FrictionState& friction = state.friction[f];
-  if (one_sided_row(*unit.friction)) { // The rope becomes slack. Ropes that become taut are handled by an impact.
+  if (unit.rope) { // The rope becomes slack. Ropes that become taut are handled by an impact.
     friction.phase = FrictionPhase::slip;
     friction.sign = 0;
   } else if (fired == FrictionWatch::contact_point) {
@@ -320,7 +319,7 @@ void EventHandler::note_start(const State& state, std::vector<Event>& events) co
   for (std::size_t f = 0; f < state.friction.size(); ++f)
     if (was_struck(system_, f, system_.initial_impacts, state))
       events.push_back({state.t, system_.element_names[system_.frictions[f].element],
-                        one_sided_row(*system_.frictions[f].friction) ? EventKind::closes_gap : EventKind::sticks,
+                        system_.frictions[f].rope ? EventKind::closes_gap : EventKind::sticks,
                         blow_text(system_, f, system_.initial_impacts, state)});
 }
 
@@ -396,7 +395,7 @@ void EventHandler::note_friction(const std::vector<FrictionState>& before, const
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
     const FrictionState &old = before[f], &now = state.friction[f];
     const FrictionUnit& unit = system_.frictions[f];
-    if (const OneSidedRow* const rope = one_sided_row(*unit.friction)) {
+    if (const OneSidedRow* const rope = unit.rope) {
       const std::size_t known = events.size();
       note_rope(system_, {rope, f}, old.phase, impacts_before, state, events);
       for (int w = 0; w < k_friction_event_count && events.size() > known; ++w) fresh_[unit.first_event + w] = 1;
@@ -445,7 +444,7 @@ void EventHandler::list_changes_within(const State& before, const State& state, 
 }
 
 void EventHandler::fail_on_pulley(const State& state, int f) const {
-  const OneSidedRow& rope = *one_sided_row(*system_.frictions[f].friction);
+  const OneSidedRow& rope = *system_.frictions[f].rope;
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
   const auto& [one, next] = rope.points.at(rope.shortest_part(motion.data()).place);
@@ -463,7 +462,7 @@ EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fir
     const int f = friction_of_slot_[slot];
     if (f < 0) continue;
     const FrictionWatch watch = system_.frictions[f].watch_of(slot);
-    const OneSidedRow* const rope = one_sided_row(*system_.frictions[f].friction);
+    const OneSidedRow* const rope = system_.frictions[f].rope;
     if (rope && watch == OneSidedRow::k_length_reached) {
       found.is_any_tight = true;
       fresh_[slot] = 1;
@@ -505,7 +504,7 @@ bool EventHandler::strike(State& state, Blow blow, std::vector<Event>& events) {
   if (follow_jumps(state, nullptr, events)) is_contact_changed = true;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     const FrictionPhase phase = state.friction[f].phase;
-    if ((phase != FrictionPhase::stick && phase != FrictionPhase::slip) || one_sided_row(*system_.frictions[f].friction)) continue;
+    if ((phase != FrictionPhase::stick && phase != FrictionPhase::slip) || system_.frictions[f].rope) continue;
     double rate_before[3] = {0, 0, 0}, rate[3] = {0, 0, 0};
     slip_rates(unhurt, f, rate_before);
     slip_rates(state, f, rate);
@@ -557,8 +556,8 @@ void EventHandler::note_blows(const std::vector<Impact>& impacts_before, const S
 void EventHandler::record_simultaneous_slips(const State& state, const std::vector<double>& event_value) {
   const LoadSharing* const sharing = dynamics_.sharing();
   const auto stuck = [&](std::size_t f) {
-    const FrictionElement& friction = *system_.frictions[f].friction;
-    return before_[f].phase == FrictionPhase::stick && !friction.never_slips() && impact_index(friction) < 0;
+    const FrictionUnit& unit = system_.frictions[f];
+    return before_[f].phase == FrictionPhase::stick && !unit.friction->never_slips() && impact_index(unit) < 0;
   };
   const auto began = [&](std::size_t f) { return state.friction[f].phase == FrictionPhase::slip && stuck(f); };
   std::size_t first = 0;

@@ -42,7 +42,7 @@ public:
               const Dynamics::ModeProblem& candidates)
       : system_(system), state_(state), elements_(elements), evaluation_(evaluation), candidates_(candidates), n_(candidates.rows.size()),
         wrench_(n_, 0.0), blocks_(elements.size()), is_kinetic_(elements.size(), 0) {
-    for (const int f : elements) is_flat_ = is_flat_ && system.frictions[f].friction->dimension() == 1;
+    for (const int f : elements) is_flat_ = is_flat_ && system.frictions[f].bounded;
   }
 
   // Solves with μ_s first; slipping elements then get μ_k and the problem is solved again. The slipping set only grows (theory.md §3).
@@ -64,12 +64,12 @@ private:
     MatX a(n, n);
     VecX b(n), lower(n), upper(n), rounding(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double no_compliance = 0.0, pull = -1.0, push = 1.0;
       b[i] = candidates_.acceleration[i];
       rounding[i] = candidates_.rounding[i];
-      const bool is_rope = one_sided_row(*system_.frictions[elements_[i]].friction) != nullptr;
-      upper[i] = is_rope ? 0.0 : block_of(i, &no_compliance, &pull).wrench[0];
-      lower[i] = is_rope ? -std::numeric_limits<double>::infinity() : block_of(i, &no_compliance, &push).wrench[0];
+      const int f = elements_[i];
+      const WrenchBounds bounds = system_.frictions[f].bounded->bounds(evaluation_, state_.friction[f], is_kinetic_[i] != 0);
+      lower[i] = bounds.low;
+      upper[i] = bounds.high;
       for (Eigen::Index j = 0; j < n; ++j) a(i, j) = candidates_.compliance[i * n + j];
     }
     const BoxSolution solution = solve_box_problem(a, b, lower, upper, rounding);
@@ -247,7 +247,7 @@ void FrictionModes::solve(State& state, const std::vector<int>& candidates) {
     FrictionState& friction = state.friction[candidates[i]];
     friction.phase = blocks[i].sticks ? FrictionPhase::stick : FrictionPhase::slip;
     std::copy(blocks[i].direction, blocks[i].direction + 3, friction.direction);
-    if (one_sided_row(*system_.frictions[candidates[i]].friction)) {
+    if (system_.frictions[candidates[i]].rope) {
       friction.sign = 0;
       continue;
     }

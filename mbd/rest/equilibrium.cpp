@@ -232,8 +232,7 @@ private:
     for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
       const FrictionUnit& unit = system_.frictions[f];
       const FrictionPhase phase = state_.friction[f].phase;
-      if (const OneSidedRow* rope = one_sided_row(*unit.friction);
-          rope && phase == FrictionPhase::stick && wrench[unit.row] > k_pushes * rope->rest_tension)
+      if (const OneSidedRow* rope = unit.rope; rope && phase == FrictionPhase::stick && wrench[unit.row] > k_pushes * rope->rest_tension)
         pushing_.push_back({f, {wrench[unit.row], 0.0, 0.0}, 0.0});
       if ((phase != FrictionPhase::stick && phase != FrictionPhase::slip) || unit.friction->never_slips()) continue;
       double* const own = &wrench[unit.row];
@@ -308,7 +307,7 @@ private:
   // Releases sticking friction of contacts, which then gains its load again.
   void free_contacts() {
     for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f)
-      if (state_.friction[f].phase == FrictionPhase::stick && !one_sided_row(*system_.frictions[f].friction) && is_of_contacts(f))
+      if (state_.friction[f].phase == FrictionPhase::stick && !system_.frictions[f].rope && is_of_contacts(f))
         state_.friction[f].phase = FrictionPhase::free;
   }
   void put_on_rows() {

@@ -97,7 +97,7 @@ bool Changeover::closes_rows() const {
   const auto is_new = [this](int element) { return begins[static_cast<std::size_t>(element)] != 0; };
   return std::any_of(to.rows.begin(), to.rows.end(), [&](const RowSpec& row) { return is_new(row.element); }) ||
          std::any_of(to.frictions.begin(), to.frictions.end(),
-                     [&](const FrictionUnit& unit) { return is_new(unit.element) && impact_index(*unit.friction) >= 0; });
+                     [&](const FrictionUnit& unit) { return is_new(unit.element) && impact_index(unit) >= 0; });
 }
 
 State carried(const Changeover& change, const State& state) {

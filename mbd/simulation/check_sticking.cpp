@@ -21,7 +21,7 @@ void check_sticking(const System& system, const State& state, const LoadSharing*
     if (state.friction[f].phase != FrictionPhase::stick || (sharing && sharing->group_of(f) >= 0)) continue;
     const double one = event_value[unit.slot(FrictionWatch::first)], other = event_value[unit.slot(FrictionWatch::second)];
     const std::string& name = system.element_names[unit.element];
-    if (const OneWayLock* const lock = one_way_lock(*unit.friction)) {
+    if (const OneWayLock* const lock = one_way_lock(unit)) {
       const double beyond = -std::min(one, other); // the bounded side
       if (beyond <= k_stuck_beyond * lock->drag() + slight_force(system, *lock->rows(state.friction[f]))) continue;
       throw ElementFailure("at t = " + number_text(t) + " s the one-way clutch '" + name + "' holds back with " +

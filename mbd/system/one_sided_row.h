@@ -10,6 +10,7 @@
 // jump (mbd/events/blow.h), and the impulse is stored in State::impacts.
 #pragma once
 
+#include "mbd/system/bounded_friction.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@
 namespace steplap {
 
 /// The constraint of one rope.
-class OneSidedRow final : public FrictionElement {
+class OneSidedRow final : public BoundedFriction {
 public:
   static constexpr double k_at_length = 1e-9;  ///< relative: the rope starts taut if it is nearer than this to its full length
   static constexpr double k_too_long = 1e-6;   ///< relative: excess of length that is accepted as rounding in the model file
@@ -81,7 +82,6 @@ public:
   [[nodiscard]] MeasureValue<double> measured(const Motion<double>* motion) const { return evaluate_row<false>(row, motion); }
   [[nodiscard]] double left(const Motion<double>* motion) const { return length - measured(motion).value; }
 
-  [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   [[nodiscard]] bool never_slips() const override { return true; }
   void mark_bodies(std::vector<char>& is_used) const override {
@@ -89,6 +89,10 @@ public:
   }
   [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
   void slip_wrench(const Evaluation&, const FrictionState&, const double*, double* wrench) const override { wrench[0] = 0.0; }
+  [[nodiscard]] WrenchBounds bounds(const Evaluation&, const FrictionState&, bool /*kinetic*/) const override {
+    return {-std::numeric_limits<double>::infinity(), 0.0};
+  }
+  /// Zero, the power of a rope: a taut one has no rate, a slack one no force. The support function of (−∞, 0] would be infinite.
   [[nodiscard]] double support(const Evaluation&, const FrictionState&, const double*) const override { return 0.0; }
   void stick_events(const Evaluation& e, const FrictionState&, const double* wrench, double* event_value) const override {
     event_value[0] = rest_tension - wrench[0];
@@ -102,7 +106,7 @@ public:
   }
   void set_onset_direction(const Evaluation&, FrictionState&, const double*) const override {}
   void aim(FrictionState& state, const double*) const override { state.sign = 0; }
-  /// Tension only: w ≤ 0.
+  /// As for every interval, but where drives determine the length (a = 0), the tension is zero, not infinite.
   [[nodiscard]] BlockSolution solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b,
                                           bool /*kinetic*/) const override {
     BlockSolution block;
@@ -116,10 +120,6 @@ private:
   std::vector<RowSpec> further_; ///< all parts but the first
 };
 
-/// Returns the element as a one-sided row, or null if it is another kind of friction.
-[[nodiscard]] inline const OneSidedRow* one_sided_row(const FrictionElement& friction) {
-  return friction.never_slips() ? dynamic_cast<const OneSidedRow*>(&friction) : nullptr;
-}
 /// A one-sided row with the index of its friction element.
 struct OneSidedUnit {
   const OneSidedRow* row = nullptr;
@@ -127,7 +127,7 @@ struct OneSidedUnit {
 };
 /// Returns a range over all one-sided rows, in the order of the friction elements. `system` must outlive it.
 [[nodiscard]] inline auto one_sided_rows(const System& system) {
-  const auto of = [&system](std::size_t f) { return OneSidedUnit{one_sided_row(*system.frictions[f].friction), f}; };
+  const auto of = [&system](std::size_t f) { return OneSidedUnit{system.frictions[f].rope, f}; };
   return std::views::iota(std::size_t{0}, system.frictions.size()) | std::views::transform(of) |
          std::views::filter([](const OneSidedUnit& unit) { return unit.row != nullptr; });
 }

@@ -8,7 +8,7 @@
 
 namespace steplap {
 
-class OneWayLock : public FrictionElement {
+class OneWayLock : public BoundedFriction {
 public:
   static constexpr double k_without_bound = 1e30; ///< bound that no machine reaches, N or N m
 
@@ -20,17 +20,15 @@ public:
   [[nodiscard]] virtual double drag() const = 0;
 };
 
-/// Returns the element as a one-way lock, or null if it is another kind of friction or currently has finite bounds.
-[[nodiscard]] inline const OneWayLock* one_way_lock(const FrictionElement& friction) {
-  if (friction.dimension() != 1 || friction.never_slips()) return nullptr;
-  const auto* const lock = dynamic_cast<const OneWayLock*>(&friction);
-  return lock && lock->refuses() != 0 ? lock : nullptr;
+/// Returns the element as a one-way lock, or null if it is another kind of friction or has finite bounds.
+[[nodiscard]] inline const OneWayLock* one_way_lock(const FrictionUnit& unit) {
+  return unit.clutch && unit.clutch->refuses() != 0 ? unit.clutch : nullptr;
 }
 
 /// Returns the index in State::impacts; −1 for elements without impacts.
-[[nodiscard]] inline int impact_index(const FrictionElement& friction) {
-  if (const OneSidedRow* rope = one_sided_row(friction)) return rope->impact;
-  const OneWayLock* const lock = one_way_lock(friction);
+[[nodiscard]] inline int impact_index(const FrictionUnit& unit) {
+  if (unit.rope) return unit.rope->impact;
+  const OneWayLock* const lock = one_way_lock(unit);
   return lock ? lock->impact : -1;
 }
 

@@ -251,7 +251,7 @@ void RequestedChannels::add_share(const Share& share) {
 
   std::vector<int> impacts;
   for (const std::size_t f : frictions)
-    if (const int index = impact_index(*system.frictions[f].friction); index >= 0) impacts.push_back(index);
+    if (const int index = impact_index(system.frictions[f]); index >= 0) impacts.push_back(index);
 
   const auto stored = [givers, inner](const Snapshot& s) {
     double sum = 0.0;

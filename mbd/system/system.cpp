@@ -3,6 +3,7 @@
 #include "mbd/base/name_pattern.h"
 #include "mbd/model/method.h"
 #include "mbd/system/measured_channel.h"
+#include "mbd/system/one_way_lock.h"
 #include "mbd/system/own_states.h"
 #include "mbd/system/places.h"
 #include "mbd/system/requested_channels.h"
@@ -456,7 +457,11 @@ void SystemBuilder::add_rows(std::vector<RowSpec> rows, bool is_rigid, int coord
 int SystemBuilder::add_friction(std::unique_ptr<FrictionElement> friction) {
   const int row = system_->friction_row_count;
   system_->friction_row_count += friction->dimension();
-  system_->frictions.push_back({std::move(friction), row, 0, element_});
+  FrictionUnit unit{std::move(friction), row, 0, element_};
+  unit.bounded = dynamic_cast<const BoundedFriction*>(unit.friction.get());
+  unit.rope = dynamic_cast<const OneSidedRow*>(unit.friction.get());
+  unit.clutch = dynamic_cast<const OneWayLock*>(unit.friction.get());
+  system_->frictions.push_back(std::move(unit));
   return static_cast<int>(system_->frictions.size()) - 1;
 }
 

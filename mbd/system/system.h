@@ -135,12 +135,19 @@ struct Unit {
   int element = 0;                      ///< index in System::element_names
 };
 
+class BoundedFriction;
+class OneSidedRow;
+class OneWayLock;
+
 /// A friction element with its indices in the arrays of a run.
 struct FrictionUnit {
   std::unique_ptr<FrictionElement> friction; ///< never nullptr
   int row = 0;                               ///< index of its first component in Snapshot::friction_force
   int first_event = 0;                       ///< index of its first event function
   int element = 0;                           ///< index in System::element_names
+  const BoundedFriction* bounded = nullptr;  ///< the element, if its dimension is 1
+  const OneSidedRow* rope = nullptr;         ///< the element, if it is an inextensible rope
+  const OneWayLock* clutch = nullptr;        ///< the element, if it is a one-way clutch
 
   /// Returns the index of one of its event functions.
   [[nodiscard]] int slot(FrictionWatch watch) const { return first_event + static_cast<int>(watch); }

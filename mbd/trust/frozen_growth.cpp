@@ -128,9 +128,9 @@ bool is_steady_motion(const System& system, const LegMotion& leg) {
 }
 
 // Returns true for a row that resists one side only and may touch without force: a rope that is just taut, a freewheel without drag.
-bool is_one_sided(const FrictionElement& friction) {
-  if (one_sided_row(friction)) return true;
-  const OneWayLock* const lock = one_way_lock(friction);
+bool is_one_sided(const FrictionUnit& unit) {
+  if (unit.rope) return true;
+  const OneWayLock* const lock = one_way_lock(unit);
   return lock && lock->drag() == 0.0;
 }
 
@@ -180,7 +180,7 @@ std::vector<char> FrozenLeg::idle_one_sided_rows() const {
   if (statics_.force().size() > 0) size = std::max(size, statics_.force().cwiseAbs().maxCoeff());
   for (std::size_t i = 0; i < statics_.rows().size(); ++i) {
     const StaticRow& row = statics_.rows()[i];
-    if (row.friction < 0 || !is_one_sided(*system_.frictions[static_cast<std::size_t>(row.friction)].friction)) continue;
+    if (row.friction < 0 || !is_one_sided(system_.frictions[static_cast<std::size_t>(row.friction)])) continue;
     if (std::abs(lambda_[static_cast<Eigen::Index>(i)]) > k_idle * size) continue;
     const auto slot = static_cast<std::size_t>(row.friction_row);
     if (idle.size() <= slot) idle.resize(slot + 1, 0);

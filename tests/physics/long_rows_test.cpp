@@ -43,7 +43,7 @@ struct Bench {
   std::unique_ptr<System> system = compile(scene(k_scene));
   State state = system->initial_state();
   Dynamics dynamics{*system};
-  const OneSidedRow* rope = one_sided_row(*system->frictions[0].friction);
+  const OneSidedRow* rope = system->frictions[0].rope;
   std::vector<double> y, dy;
   int n = 0, row = -1;
 

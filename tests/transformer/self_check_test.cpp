@@ -54,6 +54,7 @@ public:
   void set_onset_direction(const Evaluation& e, FrictionState& s, const double* wrench) const override {
     real_->set_onset_direction(e, s, wrench);
   }
+  void aim(FrictionState& s, const double* rate) const override { real_->aim(s, rate); }
   // Where it begins to move the mode problem is asked how it goes on.
   void slip_events(const Evaluation&, const FrictionState&, const double* rate, double* event_value) const override {
     event_value[0] = 1e-9 - std::abs(rate[0]);
@@ -79,6 +80,7 @@ struct CheckedModel {
   void make(Fault fault) {
     std::unique_ptr<FrictionElement>& friction = system->frictions.front().friction;
     friction = std::make_unique<Faulty>(std::move(friction), fault);
+    system->frictions.front().bounded = nullptr; // its blocks are solved by the faulty element
   }
   [[nodiscard]] RunResult run() const { return simulate(*system, system->initial_state(), options_of(model)); }
 };
