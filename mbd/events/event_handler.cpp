@@ -55,7 +55,9 @@ bool is_slight(const System& system, const State& before, const State& after) {
 // Several elements reached their bounds at the same instant and all were released. Those that slide drop from μ_s to μ_k, and this may
 // unload others. An unloaded element has no slip rate yet and returns to the phase in `before`. If it is then not inside its static bound,
 // it is released for good, so no set of modes is tried twice.
-void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& modes, const std::vector<FrictionState>& before, State& state) {
+void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& modes, EventTransaction& event) {
+  const std::vector<FrictionState>& before = event.friction_before;
+  State& state = event.now;
   std::vector<int> begun, relieved;
   const LoadSharing* const sharing = dynamics.sharing();
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
@@ -93,41 +95,38 @@ double share_of_bound(const FrictionUnit& unit, const std::vector<double>& event
   return unit.friction->dimension() == 1 ? 1.0 - 2.0 * std::min(one, other) / (one + other) : 1.0 - one;
 }
 
-std::string Event::words() const { return detail.empty() ? words_of(kind) : words_of(kind) + (" " + detail); }
-
 EventHandler::EventHandler(const System& system, Dynamics& dynamics)
     : system_(system), dynamics_(dynamics), modes_(system, dynamics), unit_of_slot_(system.event_count, -1),
-      friction_of_slot_(system.event_count, -1), fresh_(system.event_count, 0), has_switched_(system.event_count, 0),
-      y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
+      friction_of_slot_(system.event_count, -1), fresh_(system.event_count, 0), y_(static_cast<std::size_t>(system.largest_dimension())),
+      dy_(y_.size()) {
   for (std::size_t u = 0; u < system.units.size(); ++u)
     for (int w = 0; w < system.units[u].event_count; ++w) unit_of_slot_[system.units[u].first_event + w] = static_cast<int>(u);
   for (std::size_t f = 0; f < system.frictions.size(); ++f)
     for (int w = 0; w < k_friction_event_count; ++w) friction_of_slot_[system.frictions[f].first_event + w] = static_cast<int>(f);
 }
 
-void EventHandler::slip_rates(const State& state, int f, double* rate) {
+void EventHandler::slip_rates(const State& state, const Motion<double>* motion, int f, double* rate) const {
   const FrictionElement& friction = *system_.frictions[f].friction;
   const RowSpec* rows = friction.rows(state.friction[f]);
-  place_bodies(state.q, state.v, motion_);
-  for (int r = 0; r < friction.dimension(); ++r) rate[r] = evaluate_row<false>(rows[r], motion_.data()).rate;
+  for (int r = 0; r < friction.dimension(); ++r) rate[r] = evaluate_row<false>(rows[r], motion).rate;
 }
 
 // Element f has gained its normal force. Sets its contact point by the pose (it was not monitored without force), the anchor there, and its
 // phase: sticking or sliding as the bodies move.
-void EventHandler::load(State& state, int f) {
-  FrictionState& friction = state.friction[f];
+void EventHandler::load(EventTransaction& event, int f) {
+  FrictionState& friction = event.now.friction[f];
   const FrictionElement& element = *system_.frictions[f].friction;
   if (element.contact_point_event(dynamics_.evaluation(), friction) < 0.0) element.switch_contact_point(dynamics_.evaluation(), friction);
   if (friction.phase == FrictionPhase::apart) return;
-  modes_.set_anchor(state, f);
+  modes_.set_anchor(event.now, f);
   double rate[3] = {0, 0, 0};
-  place_bodies(state.q, state.v, motion_);
+  const Motion<double>* const motion = event.motion();
   bool is_sliding = false;
   for (int r = 0; r < element.dimension(); ++r) {
     const RowSpec& row = element.rows(friction)[r];
-    const auto m = evaluate_row<false>(row, motion_.data());
+    const auto m = evaluate_row<false>(row, motion);
     rate[r] = m.rate;
-    is_sliding = is_sliding || std::abs(m.rate) > (element.dimension() == 1 ? rest_rate(row, m, motion_.data()) : k_rest_velocity);
+    is_sliding = is_sliding || std::abs(m.rate) > (element.dimension() == 1 ? rest_rate(row, m, motion) : k_rest_velocity);
   }
   is_sliding = is_sliding && !element.never_slips();
   friction.phase = is_sliding ? FrictionPhase::slip : FrictionPhase::stick;
@@ -167,17 +166,20 @@ void EventHandler::start(State& state) {
   const bool is_any_tight = set_ropes(system_, state);
   if (is_any_tight || turns_against_lock(system_, state)) {
     take_blow(system_, dynamics_, state);
-    note_blows(system_.initial_impacts, state);
+    record_blows(system_.initial_impacts, state);
     modes_.evaluate(state);
     begin_units(state); // the impact changes velocities, on which modes of dampers and formulas depend
   }
   modes_.evaluate(state);
+  const std::vector<int> no_slots;
+  std::vector<Event> no_events;
+  EventTransaction event(system_, state, no_slots, no_events);
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     FrictionState& friction = state.friction[f];
     if (system_.frictions[f].rope) continue;
     modes_.set_anchor(state, f);
     if (friction.phase != FrictionPhase::apart && system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction))
-      load(state, f);
+      load(event, f);
   }
   modes_.forget_evaluation();
   (void)modes_.decide(state);
@@ -187,9 +189,10 @@ void EventHandler::start(State& state) {
   clear_fresh();
 }
 
-bool EventHandler::switch_units(State& state, const std::vector<int>& fired, std::vector<Event>& events) {
+bool EventHandler::switch_units(EventTransaction& event, const std::vector<int>& slots) {
+  State& state = event.now;
   bool is_any = false;
-  for (const int slot : fired) {
+  for (const int slot : slots) {
     const int u = unit_of_slot_[slot];
     if (u < 0) continue;
     const Unit& unit = system_.units[u];
@@ -200,15 +203,16 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired, std
     const UnitMode to = unit.group->next_mode(unit.index, from, slot - unit.first_event, dynamics_.evaluation());
     if (to == from) continue;
     state.mode[u] = to;
-    has_switched_[slot] = 1;
+    event.has_switched[slot] = 1;
     state.dissipated += unit.group->jump_inner(unit.index, to, dynamics_.evaluation(), state.inner.data());
     if (unit.group->ends_run_in(unit.index, to))
       stop_reason_ = "'" + system_.element_names[unit.element] + "' " + words_of(unit.group->event_kind(from, to));
     is_any = true;
     for (int w = 0; w < unit.event_count; ++w)
       fresh_[unit.first_event + w] = !unit.group->is_armed_at_entry(unit.index, to, w, dynamics_.evaluation());
-    list_unit_change(u, from, to, state.t, events);
+    list_unit_change(u, from, to, state.t, event.events);
   }
+  event.is_loading_changed = event.is_loading_changed || is_any;
   return is_any;
 }
 
@@ -221,7 +225,9 @@ void EventHandler::list_unit_change(int u, UnitMode from, UnitMode to, double t,
     events.push_back({t, system_.element_names[unit.element], slide});
 }
 
-void EventHandler::fire_friction(State& state, int f, FrictionWatch fired) {
+// Changes the phase of element f, whose event function `fired` became negative.
+void EventHandler::change_phase(EventTransaction& event, int f, FrictionWatch fired) {
+  State& state = event.now;
   const FrictionUnit& unit = system_.frictions[f];
   FrictionState& friction = state.friction[f];
   if (unit.rope) { // The rope becomes slack. Ropes that become taut are handled by an impact.
@@ -232,7 +238,7 @@ void EventHandler::fire_friction(State& state, int f, FrictionWatch fired) {
     const FrictionState from = friction;
     unit.friction->switch_contact_point(dynamics_.evaluation(), friction);
     modes_.set_anchor(state, f);
-    if (unit.friction->dimension() == 1) move_on(state, f, from);
+    if (unit.friction->dimension() == 1) move_on(event, f, from);
   } else if (friction.phase == FrictionPhase::stick) {
     friction.phase = FrictionPhase::slip;
     friction.has_slipped = friction.is_onset = true;
@@ -240,7 +246,7 @@ void EventHandler::fire_friction(State& state, int f, FrictionWatch fired) {
     unit.friction->set_onset_direction(dynamics_.evaluation(), friction, snapshot.friction_force + unit.row);
   } else if (friction.phase == FrictionPhase::slip) {
     double rate[3];
-    slip_rates(state, f, rate);
+    slip_rates(state, event.motion(), f, rate);
     if (unit.friction->continue_slip(dynamics_.evaluation(), friction, rate, fired)) return;
     modes_.end_slip(state, f);
     friction.phase = FrictionPhase::stick; // or it reverses: the mode problem decides
@@ -251,15 +257,15 @@ void EventHandler::fire_friction(State& state, int f, FrictionWatch fired) {
 // The contact point of element f has moved to another point of its bodies. If that point has a velocity, the element slides with it:
 // sticking there would require an impact, and a slip may have the opposite direction. If the contact point only approximates a face, the
 // velocity error of this approximation does not count.
-void EventHandler::move_on(State& state, int f, const FrictionState& from) {
-  FrictionState& friction = state.friction[f];
+void EventHandler::move_on(EventTransaction& event, int f, const FrictionState& from) {
+  FrictionState& friction = event.now.friction[f];
   const FrictionElement& element = *system_.frictions[f].friction;
   const bool is_acting = friction.phase == FrictionPhase::stick || friction.phase == FrictionPhase::slip;
   if (!is_acting || element.never_slips()) return;
   const RowSpec& row = *element.rows(friction);
-  place_bodies(state.q, state.v, motion_);
-  const auto m = evaluate_row<false>(row, motion_.data());
-  double at_rest = rest_rate(row, m, motion_.data());
+  const Motion<double>* const motion = event.motion();
+  const auto m = evaluate_row<false>(row, motion);
+  double at_rest = rest_rate(row, m, motion);
   if (from.phase == FrictionPhase::stick) at_rest += rate_error(element, dynamics_.evaluation(), from, friction);
   if (std::abs(m.rate) <= at_rest) return;
   friction.phase = FrictionPhase::slip;
@@ -268,15 +274,18 @@ void EventHandler::move_on(State& state, int f, const FrictionState& from) {
   element.aim(friction, &m.rate);
 }
 
-// Updates friction elements that gained or lost their normal force by contacts or signals. Returns true if there are any.
-bool EventHandler::update_loading(State& state) {
+// Updates friction elements that gained or lost their normal force by contacts or signals.
+void EventHandler::update_loading(EventTransaction& event) {
+  if (!event.is_loading_changed) return;
+  State& state = event.now;
+  modes_.evaluate(state);
   bool is_any = false;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     FrictionState& friction = state.friction[f];
     if (friction.phase == FrictionPhase::apart) continue;
     const bool is_loaded = system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction);
     if (is_loaded && friction.phase == FrictionPhase::free) {
-      load(state, f);
+      load(event, f);
       if (friction.phase == FrictionPhase::slip) friction.has_slipped = true;
       is_any = true;
     } else if (!is_loaded && friction.phase != FrictionPhase::free) {
@@ -285,7 +294,9 @@ bool EventHandler::update_loading(State& state) {
       is_any = true;
     }
   }
-  return is_any;
+  if (!is_any) return;
+  modes_.forget_evaluation();
+  event.is_settled = false;
 }
 
 bool EventHandler::is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const {
@@ -390,8 +401,8 @@ bool EventHandler::list_friction_change(std::size_t f, const FrictionState& old,
   return true;
 }
 
-void EventHandler::note_friction(const std::vector<FrictionState>& before, const std::vector<Impact>& impacts_before, const State& state,
-                                 std::vector<Event>& events) {
+void EventHandler::list_friction_changes(const std::vector<FrictionState>& before, const std::vector<Impact>& impacts_before,
+                                         const State& state, std::vector<Event>& events) {
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
     const FrictionState &old = before[f], &now = state.friction[f];
     const FrictionUnit& unit = system_.frictions[f];
@@ -420,7 +431,7 @@ void EventHandler::settle_phases(State& state) {
 
 void EventHandler::note_changes(const State& before, const State& state, std::vector<Event>& events) {
   list_changes_within(before, state, events);
-  note_friction(before.friction, before.impacts, state, events);
+  list_friction_changes(before.friction, before.impacts, state, events);
   clear_fresh();
 }
 
@@ -443,53 +454,50 @@ void EventHandler::list_changes_within(const State& before, const State& state, 
   }
 }
 
-void EventHandler::fail_on_pulley(const State& state, int f) const {
+void EventHandler::fail_on_pulley(EventTransaction& event, int f) const {
   const OneSidedRow& rope = *system_.frictions[f].rope;
-  std::vector<Motion<double>> motion;
-  place_bodies(state.q, state.v, motion);
-  const auto& [one, next] = rope.points.at(rope.shortest_part(motion.data()).place);
-  throw rope_has_run_in(state.t, system_.element_names[rope.row.element], one, next);
+  const auto& [one, next] = rope.points.at(rope.shortest_part(event.motion()).place);
+  throw rope_has_run_in(event.now.t, system_.element_names[rope.row.element], one, next);
 }
 
-// Applies the transition of every friction slot that fired. Ropes that became taut are only reported; the caller resolves their impact.
-// Throws if a rope has run into a pulley.
-EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fired) {
-  Fired found;
+// Applies the transition of every friction slot that fired. Ropes that became taut are only noted: resolve_rope_impacts() follows. Throws if
+// a rope has run into a pulley.
+void EventHandler::change_phases(EventTransaction& event) {
   const LoadSharing* const sharing = dynamics_.sharing();
-  is_released_.assign(sharing ? sharing->groups().size() : 0, 0);
-  has_fired_.assign(system_.frictions.size(), 0);
-  for (const int slot : fired) {
+  std::vector<char> is_released(sharing ? sharing->groups().size() : 0, 0), has_fired(system_.frictions.size(), 0);
+  for (const int slot : event.fired) {
     const int f = friction_of_slot_[slot];
     if (f < 0) continue;
     const FrictionWatch watch = system_.frictions[f].watch_of(slot);
     const OneSidedRow* const rope = system_.frictions[f].rope;
     if (rope && watch == OneSidedRow::k_length_reached) {
-      found.is_any_tight = true;
+      event.is_any_tight = true;
       fresh_[slot] = 1;
       continue;
     }
-    if (rope && watch == OneSidedRow::k_on_pulley) fail_on_pulley(state, f);
+    if (rope && watch == OneSidedRow::k_on_pulley) fail_on_pulley(event, f);
     const int group = sharing && watch != FrictionWatch::contact_point ? sharing->group_of(f) : -1;
-    if (group >= 0 && watch == FrictionWatch::second) continue; // the rows separate; decide() finds out how
+    if (group >= 0 && watch == FrictionWatch::second) continue; // the rows separate; the mode problem finds out how
     if (group >= 0) {                                           // fires in the slots of all elements of the group
-      if (!is_released_[group]) modes_.release(state, group);
-      is_released_[group] = 1;
+      if (!is_released[group]) modes_.release(event.now, group);
+      is_released[group] = 1;
       continue;
     }
     // If both slots of an element fired, only the first counts: it changes the phase to which the second belongs.
     if (watch != FrictionWatch::contact_point) {
-      if (has_fired_[f]) continue;
-      has_fired_[f] = 1;
+      if (has_fired[f]) continue;
+      has_fired[f] = 1;
     }
-    fire_friction(state, f, watch);
-    found.is_any_at_rest = found.is_any_at_rest || state.friction[f].phase == FrictionPhase::stick;
+    change_phase(event, f, watch);
+    event.is_any_at_rest = event.is_any_at_rest || event.now.friction[f].phase == FrictionPhase::stick;
   }
-  return found;
+  if (event.fired.size() > 1) hold_relieved(system_, dynamics_, modes_, event);
+  if (!event.fired.empty()) modes_.forget_evaluation();
 }
 
-// Applies an impact and updates modes of contacts and phases of friction for the new velocities. Returns true if a contact changed its
-// mode.
-bool EventHandler::strike(State& state, Blow blow, std::vector<Event>& events) {
+// Applies an impact and updates modes of contacts and phases of friction for the new velocities.
+void EventHandler::strike(EventTransaction& event, Blow blow) {
+  State& state = event.now;
   modes_.evaluate(state);
   std::vector<double> event_value = dynamics_.event_value();
   const State unhurt = state;
@@ -498,158 +506,176 @@ bool EventHandler::strike(State& state, Blow blow, std::vector<Event>& events) {
     close_rows(system_, dynamics_, state);
   }
   take_blow(system_, dynamics_, state);
+  event.velocities_changed();
   modes_.evaluate(state);
-  std::fill(has_switched_.begin(), has_switched_.end(), 0);
-  bool is_contact_changed = switch_units(state, fallen(event_value, dynamics_.event_value()), events);
-  if (follow_jumps(state, nullptr, events)) is_contact_changed = true;
+  std::fill(event.has_switched.begin(), event.has_switched.end(), 0);
+  switch_units(event, fallen(event_value, dynamics_.event_value()));
+  follow_jumps(event);
+  std::vector<Motion<double>> motion_before;
+  place_bodies(unhurt.q, unhurt.v, motion_before);
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     const FrictionPhase phase = state.friction[f].phase;
     if ((phase != FrictionPhase::stick && phase != FrictionPhase::slip) || system_.frictions[f].rope) continue;
     double rate_before[3] = {0, 0, 0}, rate[3] = {0, 0, 0};
-    slip_rates(unhurt, f, rate_before);
-    slip_rates(state, f, rate);
+    slip_rates(unhurt, motion_before.data(), f, rate_before);
+    slip_rates(state, event.motion(), f, rate);
     if (std::equal(rate, rate + 3, rate_before, [](double x, double y) { return std::abs(x - y) <= k_rest_velocity; })) continue;
     if (phase == FrictionPhase::slip) modes_.end_slip(state, f);
-    load(state, f);
+    load(event, f);
     if (state.friction[f].phase == FrictionPhase::slip) state.friction[f].has_slipped = true;
   }
   modes_.forget_evaluation();
-  return is_contact_changed;
+  record_blows(event.impacts_before, state);
+}
+
+void EventHandler::resolve_rope_impacts(EventTransaction& event) {
+  if (event.is_any_tight) strike(event, Blow::ropes);
 }
 
 // Returns slots that a jump made negative, of units that follow jumps. A unit that has already switched in this event does not switch back.
-std::vector<int> EventHandler::slots_made_negative_by_jump(const std::vector<double>& before) const {
+std::vector<int> EventHandler::slots_made_negative_by_jump(const EventTransaction& event, const std::vector<double>& before) const {
   std::vector<int> slots = fallen(before, dynamics_.event_value());
-  std::erase_if(slots, [this](int slot) {
+  std::erase_if(slots, [&](int slot) {
     const int u = unit_of_slot_[slot];
-    return u < 0 || has_switched_[slot] != 0 || !system_.units[u].group->has_discontinuous_events();
+    return u < 0 || event.has_switched[slot] != 0 || !system_.units[u].group->has_discontinuous_events();
   });
   return slots;
 }
 
-// A signal jumps at a breakpoint, and a formula where one of its comparisons changes. Other comparisons of the formula may change as a
-// consequence, and so on. The state is evaluated in the previous modes, and switches are repeated until none follows. Each comparison
-// switches once at most, so this ends.
-bool EventHandler::follow_jumps(State& state, const std::vector<double>* event_value_before, std::vector<Event>& events) {
-  bool is_any = event_value_before && switch_units(state, slots_made_negative_by_jump(*event_value_before), events);
-  const auto has_jumped = [this] {
-    for (std::size_t slot = 0; slot < has_switched_.size(); ++slot)
-      if (has_switched_[slot] != 0 && system_.units[unit_of_slot_[slot]].group->has_discontinuous_events()) return true;
+// A signal jumps at a breakpoint. Units whose event functions it makes negative switch.
+void EventHandler::follow_breakpoint(EventTransaction& event) {
+  if (event.event_value_before) switch_units(event, slots_made_negative_by_jump(event, *event.event_value_before));
+}
+
+// A formula jumps where one of its comparisons changes. Other comparisons may change as a consequence, and so on. The state is evaluated in
+// the previous modes, and switches are repeated until none follows. Each comparison switches once at most, so this ends.
+void EventHandler::follow_jumps(EventTransaction& event) {
+  const auto has_jumped = [&] {
+    for (std::size_t slot = 0; slot < event.has_switched.size(); ++slot)
+      if (event.has_switched[slot] != 0 && system_.units[unit_of_slot_[slot]].group->has_discontinuous_events()) return true;
     return false;
   };
-  if (!has_jumped()) return is_any;
-  for (;;) {
-    const std::vector<double> before = dynamics_.event_value();
-    modes_.evaluate(state);
-    if (!switch_units(state, slots_made_negative_by_jump(before), events)) return is_any;
-    is_any = true;
+  if (!has_jumped()) return;
+  std::vector<double> before;
+  do {
+    before = dynamics_.event_value();
+    modes_.evaluate(event.now);
+  } while (switch_units(event, slots_made_negative_by_jump(event, before)));
+}
+
+// The mode problem assumes elements at rest, so the remaining rate of a slip that ended is removed first.
+void EventHandler::stop_ended_slips(EventTransaction& event) {
+  if (!event.is_any_at_rest) return;
+  const State unsettled = event.now;
+  const double settled = settled_;
+  settle(event);
+  if (is_slight(system_, unsettled, event.now)) {
+    event.is_settled = !modes_.rejoin(event.now);
+  } else {
+    event.now = unsettled;
+    event.velocities_changed();
+    settled_ = settled;
   }
 }
 
-void EventHandler::note_blows(const std::vector<Impact>& impacts_before, const State& state) {
+// Friction that has come to rest at the same instant, because others did, and would reverse, becomes a candidate of the mode problem.
+void EventHandler::catch_reversals(EventTransaction& event) {
+  if (!modes_.catch_reversals(event.now, event.friction_before)) return;
+  settle(event);
+  event.is_settled = true;
+}
+
+void EventHandler::decide_phases(EventTransaction& event) {
+  if (!modes_.decide(event.now)) event.is_settled = false;
+}
+
+// Projects the state onto rows that stick since this event.
+void EventHandler::meet_new_rows(EventTransaction& event) {
+  if (!event.is_settled && has_new_rows(event.friction_before, event.now)) settle(event);
+}
+
+void EventHandler::record_blows(const std::vector<Impact>& impacts_before, const State& state) {
   for (std::size_t f = 0; f < system_.frictions.size(); ++f)
     if (was_struck(system_, f, impacts_before, state)) blows_.push_back({state.t, system_.element_names[system_.frictions[f].element]});
 }
 
 // Records ties of friction elements. Ropes and locked clutches have no bound and are excluded. Groups that share a load are excluded too,
 // since their event functions are common to all elements.
-void EventHandler::record_simultaneous_slips(const State& state, const std::vector<double>& event_value) {
+void EventHandler::record_simultaneous_slips(const EventTransaction& event) {
+  if (event.event_value_at.empty()) return;
+  const std::vector<FrictionState>&before = event.friction_before, &now = event.now.friction;
   const LoadSharing* const sharing = dynamics_.sharing();
   const auto stuck = [&](std::size_t f) {
     const FrictionUnit& unit = system_.frictions[f];
-    return before_[f].phase == FrictionPhase::stick && !unit.friction->never_slips() && impact_index(unit) < 0;
+    return before[f].phase == FrictionPhase::stick && !unit.friction->never_slips() && impact_index(unit) < 0;
   };
-  const auto began = [&](std::size_t f) { return state.friction[f].phase == FrictionPhase::slip && stuck(f); };
+  const auto began = [&](std::size_t f) { return now[f].phase == FrictionPhase::slip && stuck(f); };
   std::size_t first = 0;
-  while (first < before_.size() && !began(first)) ++first;
-  if (first == before_.size()) return;
-  for (std::size_t f = 0; f < before_.size(); ++f) {
+  while (first < before.size() && !began(first)) ++first;
+  if (first == before.size()) return;
+  for (std::size_t f = 0; f < before.size(); ++f) {
     const FrictionUnit& unit = system_.frictions[f];
     const bool is_in_group = sharing && sharing->group_of(static_cast<int>(f)) >= 0;
-    if (state.friction[f].phase != FrictionPhase::stick || is_in_group || !stuck(f)) continue;
-    const double share = share_of_bound(unit, event_value);
+    if (now[f].phase != FrictionPhase::stick || is_in_group || !stuck(f)) continue;
+    const double share = share_of_bound(unit, event.event_value_at);
     if (!(share > 1.0 - k_near_bound)) continue;
-    for (std::size_t g = first; g < before_.size(); ++g)
+    for (std::size_t g = first; g < before.size(); ++g)
       if (began(g))
-        ties_.push_back({state.t, system_.element_names[system_.frictions[g].element], system_.element_names[unit.element], share});
+        ties_.push_back({event.now.t, system_.element_names[system_.frictions[g].element], system_.element_names[unit.element], share});
   }
 }
 
-// The state is evaluated and projected once for each set of modes that is tried, at most events twice. The next step starts from the last
-// evaluation.
-void EventHandler::handle(State& state, const std::vector<int>& fired, const std::vector<double>* event_value_before,
-                          std::vector<Event>& events) {
+// Clears the results of the last event.
+void EventHandler::begin_event() {
   clear_fresh();
-  std::fill(has_switched_.begin(), has_switched_.end(), 0);
   settled_ = 0.0;
-  before_ = state.friction;
-  impacts_before_ = state.impacts;
-  forget_moved_layouts(state);
-  modes_.begin_event();
-  modes_.evaluate(state);
   ties_.clear();
   blows_.clear();
+  modes_.begin_event();
+}
+
+// The rules of an event, in their order. Units switch first, because their forces load friction. What has fired or come to rest changes its
+// phase next, and the mode problem decides last, for all friction together. The state is evaluated and projected once for each set of modes
+// that is tried, at most events twice. The next step starts from the last evaluation.
+void EventHandler::handle(State& state, const std::vector<int>& fired, const std::vector<double>* event_value_before,
+                          std::vector<Event>& events) {
+  begin_event();
+  EventTransaction event(system_, state, fired, events);
+  event.event_value_before = event_value_before;
+  event.is_loading_changed = fired.empty(); // at a breakpoint a signal may begin or cease to press
+  forget_moved_layouts(state);
+  modes_.evaluate(state);
   const auto sticks = [](const FrictionState& friction) { return friction.phase == FrictionPhase::stick; };
-  const bool may_tie = std::count_if(before_.begin(), before_.end(), sticks) > 1;
-  if (may_tie) event_value_before_ = dynamics_.event_value();
-  bool is_contact_changed = switch_units(state, fired, events);
-  if (follow_jumps(state, event_value_before, events)) is_contact_changed = true;
-  const Fired found = fire(state, fired);
-  if (fired.size() > 1) hold_relieved(system_, dynamics_, modes_, before_, state);
-  if (!fired.empty()) modes_.forget_evaluation();
-  if (found.is_any_tight) {
-    if (strike(state, Blow::ropes, events)) is_contact_changed = true;
-    note_blows(impacts_before_, state);
-  }
-  bool is_settled = false; // the state satisfies the rows of its modes
-  // The mode problem assumes elements at rest, so the remaining rate of a slip that ended is removed first.
-  if (found.is_any_at_rest) {
-    const State unsettled = state;
-    const double settled = settled_;
-    settle(state);
-    if (is_slight(system_, unsettled, state)) {
-      is_settled = !modes_.rejoin(state);
-    } else {
-      state = unsettled;
-      settled_ = settled;
-    }
-  }
-  conclude(state, is_contact_changed || fired.empty(), is_settled, events); // at a breakpoint a signal may begin or cease to press
-  if (may_tie) record_simultaneous_slips(state, event_value_before_);
+  if (std::count_if(state.friction.begin(), state.friction.end(), sticks) > 1) event.event_value_at = dynamics_.event_value();
+
+  switch_units(event, fired);
+  follow_breakpoint(event);
+  follow_jumps(event);
+  change_phases(event);
+  resolve_rope_impacts(event);
+  stop_ended_slips(event);
+  conclude(event);
+  record_simultaneous_slips(event);
 }
 
 // Elements that were inactive have their initial mode and do not stick. Modes and phases of all are decided here.
 void EventHandler::take_over(State& state, bool closes_rows, std::vector<Event>& events) {
-  clear_fresh();
-  settled_ = 0.0;
-  before_ = state.friction;
-  impacts_before_ = state.impacts;
+  begin_event();
+  const std::vector<int> no_slots;
+  EventTransaction event(system_, state, no_slots, events);
+  event.is_loading_changed = true;
   dynamics_.clear_layouts();
-  modes_.begin_event();
-  blows_.clear();
-  if (closes_rows) {
-    strike(state, Blow::rows, events);
-    note_blows(impacts_before_, state);
-  }
-  conclude(state, true, false, events);
+  if (closes_rows) strike(event, Blow::rows);
+  conclude(event);
 }
 
-// Decides all friction after modes of units are known and ended slips are at rest. `is_settled`: the state satisfies the rows of its modes.
-void EventHandler::conclude(State& state, bool is_loading_changed, bool is_settled, std::vector<Event>& events) {
-  if (is_loading_changed) {
-    modes_.evaluate(state);
-    if (update_loading(state)) {
-      modes_.forget_evaluation();
-      is_settled = false;
-    }
-  }
-  if (modes_.catch_reversals(state, before_)) {
-    settle(state);
-    is_settled = true;
-  }
-  if (!modes_.decide(state)) is_settled = false;
-  note_friction(before_, impacts_before_, state, events);
-  if (!is_settled && has_new_rows(before_, state)) settle(state);
+// Decides all friction after modes of units are known and ended slips are at rest.
+void EventHandler::conclude(EventTransaction& event) {
+  update_loading(event);
+  catch_reversals(event);
+  decide_phases(event);
+  list_friction_changes(event.friction_before, event.impacts_before, event.now, event.events);
+  meet_new_rows(event);
 }
 
 // Returns true if an element sticks that did not before, or at another contact point. The state is not yet projected onto its rows.
@@ -662,6 +688,11 @@ bool EventHandler::has_new_rows(const std::vector<FrictionState>& before, const 
 }
 
 // Projects the state onto the sticking rows. Their residual velocities have the size of errors; the energy lost counts as dissipated.
+void EventHandler::settle(EventTransaction& event) {
+  settle(event.now);
+  event.velocities_changed();
+}
+
 void EventHandler::settle(State& state) {
   modes_.forget_evaluation();
   dynamics_.set_state(state);

@@ -4,7 +4,7 @@
 // remains true triggers only once, until it has been false. Each occurrence of an event triggers.
 #pragma once
 
-#include "mbd/events/event_handler.h"
+#include "mbd/events/event.h"
 #include "mbd/system/actions.h"
 
 #include <span>

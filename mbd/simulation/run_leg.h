@@ -5,6 +5,7 @@
 #pragma once
 
 #include "mbd/events/event_finder.h"
+#include "mbd/events/event_handler.h"
 #include "mbd/events/event_storm.h"
 #include "mbd/integrators/time_stepping.h"
 #include "mbd/simulation/action_triggers.h"

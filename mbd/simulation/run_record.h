@@ -1,7 +1,7 @@
 // Options and results of a run.
 #pragma once
 
-#include "mbd/events/event_handler.h"
+#include "mbd/events/event.h"
 #include "mbd/integrators/integrator.h"
 #include "mbd/simulation/extremes.h"
 #include "mbd/simulation/trajectory.h"

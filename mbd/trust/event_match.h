@@ -6,7 +6,7 @@
 // has an event that the other lacks.
 #pragma once
 
-#include "mbd/events/event_handler.h"
+#include "mbd/events/event.h"
 
 #include <cstddef>
 #include <vector>

@@ -1,5 +1,5 @@
 // Kinds of events and their words: one table, and no code that reads the words anywhere else.
-#include "mbd/events/event_handler.h"
+#include "mbd/events/event.h"
 
 #include <doctest/doctest.h>
 
