@@ -1,7 +1,6 @@
 #include "tools/steplap/new.h"
 
 #include "mbd/io/reader.h"
-#include "mbd/run/catalogue.h"
 #include "mbd/run/findings.h"
 #include "mbd/run/run.h"
 #include "tools/steplap/commands.h"
