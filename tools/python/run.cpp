@@ -1,4 +1,4 @@
-#include "mbd/base/number_text.h"
+#include "mbd/base/budget.h"
 #include "mbd/run/results.h"
 #include "tools/pages/report_page.h"
 #include "tools/python/bindings.h"
@@ -9,7 +9,6 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 
@@ -109,19 +108,11 @@ PyRun shown(const std::shared_ptr<const Report>& report) {
   return run;
 }
 
-// Returns a question that also stops after `seconds` of wall time, like `steplap simulate --time-limit`.
-StopQuestion limited(const StopQuestion& stop, double seconds) {
-  using Clock = std::chrono::steady_clock;
-  return [&stop, seconds, began = Clock::now()] {
-    const bool is_over = std::chrono::duration<double>(Clock::now() - began).count() > seconds;
-    return is_over ? "stopped by the time limit of " + number_text(seconds) + " s" : stop();
-  };
-}
-
 PyRun run_of(const PyModel& model, std::optional<std::string> method, std::optional<double> tolerance, std::optional<double> step,
              std::optional<double> end, std::optional<double> output_step, const std::string& estimate, bool second_opinion,
-             std::optional<double> time_limit) {
+             std::optional<double> time_limit, std::optional<double> memory_limit) {
   if (time_limit && !(*time_limit > 0.0)) throw py::value_error("time_limit: seconds, more than zero");
+  if (memory_limit && !(*memory_limit > 0.0)) throw py::value_error("memory_limit: bytes, more than zero");
   RunOptions options;
   options.method = std::move(method);
   options.tolerance = tolerance;
@@ -131,7 +122,7 @@ PyRun run_of(const PyModel& model, std::optional<std::string> method, std::optio
   options.estimating = estimating_named(estimate);
   options.has_second_opinion = second_opinion;
   return computed([&](const StopQuestion& stop) {
-    options.stop = time_limit ? limited(stop, *time_limit) : stop;
+    options.stop = within({time_limit, memory_limit}, stop);
     return shown(std::make_shared<const Report>(judged_run(model.loaded, options)));
   });
 }
@@ -242,10 +233,10 @@ void add_run(py::module_& module) {
   module.attr("Model").attr("run") = py::cpp_function(
       run_of, py::name("run"), py::is_method(module.attr("Model")), py::arg("method") = py::none(), py::arg("tolerance") = py::none(),
       py::arg("step") = py::none(), py::arg("end") = py::none(), py::arg("output_step") = py::none(), py::arg("estimate") = "cheap",
-      py::arg("second_opinion") = false, py::arg("time_limit") = py::none(),
+      py::arg("second_opinion") = false, py::arg("time_limit") = py::none(), py::arg("memory_limit") = py::none(),
       "Runs the model and judges the run, as `steplap simulate` does. What is not given is as the model says. Other "
-      "threads of Python go on meanwhile; Ctrl-C ends it. `time_limit`: s, after which `failure` says so and the "
-      "verdict is open.");
+      "threads of Python go on meanwhile; Ctrl-C ends it. `time_limit`: s, `memory_limit`: bytes of the "
+      "process; beyond either, `failure` says so and the verdict is open.");
 }
 
 } // namespace steplap::python

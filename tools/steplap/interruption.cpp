@@ -1,11 +1,8 @@
 #include "tools/steplap/interruption.h"
 
-#include "mbd/base/number_text.h"
-
 #include <poll.h>
 
 #include <array>
-#include <chrono>
 #include <csignal>
 
 namespace steplap {
@@ -66,15 +63,6 @@ void end_if_nobody_reads(int descriptor) {
 int noted_signal() { return noted; }
 
 std::string interruption() { return noted == 0 ? "" : std::string("stopped by ") + name_of_signal(noted); }
-
-StopQuestion stopped_after(double seconds) {
-  using Clock = std::chrono::steady_clock;
-  return [seconds, begin = Clock::now()] {
-    if (std::string why = interruption(); !why.empty()) return why;
-    const bool is_over = std::chrono::duration<double>(Clock::now() - begin).count() >= seconds;
-    return is_over ? "stopped by the time limit of " + number_text(seconds) + " s" : std::string();
-  };
-}
 
 void end_by_noted_signal() {
   if (noted == 0) return;

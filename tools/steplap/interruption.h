@@ -27,8 +27,6 @@ void end_if_nobody_reads(int descriptor);
 [[nodiscard]] int noted_signal();
 /// Returns the reason to stop, "stopped by SIGINT"; "" if no signal was recorded. Suitable for RunOptions::stop.
 [[nodiscard]] std::string interruption();
-/// Returns a question for RunOptions::stop that is answered by a recorded signal, or `seconds` from now.
-[[nodiscard]] StopQuestion stopped_after(double seconds);
 /// Ends the program by the recorded signal, so that a calling shell loop ends, too. Does nothing if there was none.
 void end_by_noted_signal();
 

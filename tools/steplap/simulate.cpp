@@ -1,5 +1,6 @@
 #include "tools/steplap/commands.h"
 
+#include "mbd/base/budget.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/units.h"
 #include "mbd/model/validate.h"
@@ -19,15 +20,18 @@
 #include "tools/steplap/shown_run.h"
 #include "transformer/program.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <ostream>
 #include <set>
 #include <string>
+#include <string_view>
 
 namespace steplap {
 
@@ -37,7 +41,7 @@ struct SimulateOptions {
   std::vector<std::string> models;
   std::vector<std::string> overrides;
   std::string output = "out";
-  std::optional<std::string> end, step, integrator, tolerance, output_step, digits, time_limit;
+  std::optional<std::string> end, step, integrator, tolerance, output_step, digits, time_limit, memory_limit;
   bool is_overwriting = false, is_error_estimated = false, is_estimate_left_out = false, is_reported = false, is_hold_required = false;
 
   /// --set and its short forms.
@@ -51,6 +55,8 @@ struct SimulateOptions {
     return all;
   }
 
+  /// --time-limit and --memory-limit.
+  [[nodiscard]] Budget budget() const;
   /// Returns the number of digits on the screen.
   [[nodiscard]] ShownDigits shown_digits() const {
     constexpr int k_most = 15;
@@ -76,6 +82,27 @@ double seconds_of(const std::string& text, const char* option) {
   if (!time.problem.empty() || !(time.value > 0.0))
     throw UsageError(std::string(option) + " '" + text + "': give a time above zero, such as 90 or \"2 min\"");
   return time.value;
+}
+
+// Reads "2GB" or "500 MB".
+double bytes_of(const std::string& text, const char* option) {
+  static const std::map<std::string_view, double> k_units = {
+      {"kB", 1e3}, {"MB", 1e6}, {"GB", 1e9}, {"MiB", 1048576.0}, {"GiB", 1073741824.0}};
+  double count = 0.0;
+  const char* const end = text.data() + text.size();
+  auto [rest, error] = std::from_chars(text.data(), end, count);
+  rest = std::find_if(rest, end, [](char c) { return c != ' '; });
+  const auto unit = k_units.find(std::string_view(rest, end));
+  if (error != std::errc() || !(count > 0.0) || unit == k_units.end())
+    throw UsageError(std::string(option) + " '" + text + "': give a size above zero with its unit, such as 2GB or 500MB");
+  return count * unit->second;
+}
+
+Budget SimulateOptions::budget() const {
+  Budget budget;
+  if (time_limit) budget.time = seconds_of(*time_limit, "--time-limit");
+  if (memory_limit) budget.memory = bytes_of(*memory_limit, "--memory-limit");
+  return budget;
 }
 
 /// A run with the folder of its files.
@@ -192,7 +219,7 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
   check_step(options, models);
   check_folders(options, models);
   const InterruptionGuard guard;
-  const StopQuestion stop = options.time_limit ? stopped_after(seconds_of(*options.time_limit, "--time-limit")) : interruption;
+  const StopQuestion stop = within(options.budget(), interruption);
   std::vector<FinishedRun> runs;
   ExitCode code = ExitCode::done;
   for (const auto& loaded : models) {
@@ -265,6 +292,7 @@ as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends
        "files and the tables of -v always have all"},
       {"--time-limit", &o->time_limit, "T",
        "stop after this time of computing, s, for all models together: what was computed is saved as after Ctrl-C, with exit code 4"},
+      {"--memory-limit", &o->memory_limit, "M", "stop in the same way when the program holds more memory than this, such as 2GB or 500MB"},
       {"--report", &o->is_reported, "", "write a page of the runs, too; see steplap report"},
       {"--require-hold", &o->is_hold_required, "",
        "exit code 5 unless the verdict on every run is hold, 4 if a second method, which is run for it, disagrees beyond both "

@@ -90,6 +90,23 @@ TEST_CASE("a time limit ends a run as a signal does, and keeps what was computed
   }
 }
 
+// A program that has started holds more than a megabyte.
+TEST_CASE("a memory limit ends a run as a time limit does") {
+  const Workbench bench;
+  const std::string model = bench.write("long.toml", k_oscillator);
+  const std::vector<std::string> run = {"simulate", model, "-o", bench.at("out"), "--set", "output.step=10"};
+  const auto limited_to = [&](const std::string& limit) {
+    std::vector<std::string> arguments = run;
+    arguments.insert(arguments.end(), {"--force", "--memory-limit", limit});
+    return steplap_does(arguments);
+  };
+  const Outcome over = limited_to("1 MB");
+  CHECK(over.code == 4);
+  CHECK(has(over.err, "is not run: stopped by the memory limit of 1 MB"));
+  CHECK(limited_to("100GB").code == 0);
+  for (const char* const wrong : {"0 GB", "-1 GB", "nan GB", "2", "2 m", "much"}) CHECK(limited_to(wrong).code == 2);
+}
+
 // Both searches ask before each of their steps, so a question that is answered at once ends them before they move anything.
 TEST_CASE("the search for rest stops when asked") {
   const Workbench bench;

@@ -180,6 +180,7 @@ class Model(_Compiled):
         estimate: _Estimate = "cheap",
         second_opinion: bool = False,
         time_limit: float | None = None,  # s
+        memory_limit: float | None = None,  # bytes
     ) -> Run: ...
     def samples(
         self,
