@@ -84,7 +84,7 @@ struct GivenFriction {
 
 /// A channel whose extremes decide whether a result can be trusted.
 struct TrustChannel {
-  std::string name;
+  std::string name;       ///< of the channel
   bool is_margin = false; ///< only values below 1 matter
 };
 

@@ -85,7 +85,7 @@ struct ChannelText {
 
 /// Quantities by which any element's channels are found, whatever its kind calls them.
 enum class ChannelRole : std::uint8_t {
-  none,
+  none,         ///< another one
   margin,       ///< of a joint: capacity over what is in use; below 1 it does not hold
   friction_use, ///< force over the largest that friction holds at the same instant
   strength_use, ///< force over the strength at which the element breaks
@@ -99,10 +99,10 @@ struct Channel {
   std::function<double(const Snapshot&)> value; ///< returns the value, in `unit`
   /// Cheap bounds of an expensive value, for the search of extremes; may be empty.
   std::function<ValueBounds(const Snapshot&)> bounds = {};
-  bool has_extremes = true;          ///< false if the value can be infinite
-  std::string sign = {}, codes = {}; ///< as in ChannelText
-  bool is_on_request = false;        ///< computed only if a model requests it
-  ChannelRole role = ChannelRole::none;
+  bool has_extremes = true;             ///< false if the value can be infinite
+  std::string sign = {}, codes = {};    ///< as in ChannelText
+  bool is_on_request = false;           ///< computed only if a model requests it
+  ChannelRole role = ChannelRole::none; ///< what it says of the element, for any kind
 };
 
 /// A power that a run integrates over time because a channel needs the integral (Snapshot::integrals).
@@ -162,6 +162,7 @@ struct SceneUnits {
   double duration = 1.0; ///< duration of the run, s
   double rate = 1.0;     ///< √(g/length), 1/s; π/duration without gravity
 
+  /// Returns 1/rate, s.
   [[nodiscard]] double time() const { return 1.0 / rate; }
 };
 
