@@ -1,6 +1,7 @@
 #include "tools/steplap/commands.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/model/entries.h"
 #include "mbd/run/findings.h"
 #include "mbd/run/quantity_text.h"
 #include "mbd/run/run.h"
@@ -37,11 +38,10 @@ struct CoreOptions {
 std::vector<const Core*> chosen_cores(const CoreOptions& options, const LoadedModel& loaded) {
   std::vector<const Core*> all, chosen;
   std::vector<std::string> known;
-  for (const TableEntry& entry : loaded.model.tables)
-    if (const auto* core = dynamic_cast<const Core*>(entry.table.get())) {
-      all.push_back(core);
-      known.push_back(core->name);
-    }
+  for (const Core* core : tables_of<Core>(loaded.model)) {
+    all.push_back(core);
+    known.push_back(core->name);
+  }
   if (all.empty()) throw UsageError("'" + loaded.path + "' has no [[core]]");
   if (options.cores.empty()) return all;
   for (const std::string& name : options.cores) {
@@ -184,10 +184,8 @@ void print_clamping(std::ostream& out, const Core& core, const Model& model) {
 
 // Returns true if other tables have yokes in the same active part.
 bool is_one_of_several(const Core& core, const Model& model) {
-  return std::count_if(model.tables.begin(), model.tables.end(), [&core](const TableEntry& entry) {
-           const auto* other = dynamic_cast<const Core*>(entry.table.get());
-           return other && other->active_part == core.active_part;
-         }) > 1;
+  const std::vector<const Core*> all = tables_of<Core>(model);
+  return std::count_if(all.begin(), all.end(), [&core](const Core* other) { return other->active_part == core.active_part; }) > 1;
 }
 
 void print_core(std::ostream& out, const Core& core, const Model& model) {

@@ -2,6 +2,7 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/model/entries.h"
 #include "mbd/model/validate.h"
 #include "transformer/core/core_builder.h"
 #include "transformer/core/core_geometry.h"
@@ -87,11 +88,10 @@ void add_forces(const Clamp& clamp, const Core& core, YokeClamping& yoke) {
 void check(const Clamp& clamp, const Model& model) {
   std::vector<std::string> known;
   const Core* core = nullptr;
-  for (const TableEntry& entry : model.tables)
-    if (const auto* one = dynamic_cast<const Core*>(entry.table.get())) {
-      known.push_back(one->name);
-      if (one->name == clamp.core) core = one;
-    }
+  for (const Core* one : tables_of<Core>(model)) {
+    known.push_back(one->name);
+    if (one->name == clamp.core) core = one;
+  }
   if (!core) wrong(clamp, "core", "there is no core '" + clamp.core + "'" + did_you_mean(clamp.core, known));
   if (clamp.count && !clamp.places.empty() && static_cast<std::size_t>(*clamp.count) != clamp.places.size())
     wrong(clamp, "count",

@@ -3,6 +3,7 @@
 #include "elements/step_lap/step_lap_interface.h"
 #include "elements/step_lap/step_lap_joint.h"
 #include "mbd/base/number_text.h"
+#include "mbd/model/entries.h"
 #include "mbd/model/validate.h"
 #include "transformer/core/core_dimensions.h"
 #include "transformer/core/core_geometry.h"
@@ -308,9 +309,8 @@ bool is_same_sheet(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
 void CoreBuilder::refuse_repetition(const StepLapInterface& face) {
   if (!problems_.empty()) return; // report only once
   const std::string own = core_.name + ": ";
-  for (const ElementEntry& entry : model_.elements) {
-    const auto* other = dynamic_cast<const StepLapInterface*>(entry.element.get());
-    if (!other || other->joint != face.joint || other->name.rfind(own, 0) == 0) continue;
+  for (const StepLapInterface* other : elements_of<StepLapInterface>(std::as_const(model_))) {
+    if (other->joint != face.joint || other->name.rfind(own, 0) == 0) continue;
     if (!is_same_sheet(other->limb, face.limb) || !is_same_sheet(other->yoke, face.yoke)) continue;
     return error("its sheets at joint '" + face.joint + "' are those of '" + other->name +
                  "' over again, and would count twice: a core of several packets is one table with 'packets'; "
@@ -347,8 +347,8 @@ void CoreBuilder::give_steel(std::size_t i, const CoreGeometry& geometry) {
 // The active part contains the yokes and more.
 void CoreBuilder::check_yokes() {
   const Core* last = nullptr; // for several tables the last one reports it
-  for (const TableEntry& entry : model_.tables)
-    if (const auto* core = dynamic_cast<const Core*>(entry.table.get()); core && core->active_part == core_.active_part) last = core;
+  for (const Core* core : tables_of<Core>(std::as_const(model_)))
+    if (core->active_part == core_.active_part) last = core;
   if (!problems_.empty() || (last && last->name != core_.name) || active_part().mass <= 0.0) return;
   const double steel = yoke_steel(model_, core_.active_part).value_or(0.0);
   if (active_part().mass < steel)
@@ -514,11 +514,10 @@ std::optional<double> yoke_steel(const Model& model, const std::string& active_p
 
 std::size_t count_cores_of(const Model& model, const std::string& limb) {
   std::size_t count = 0;
-  for (const TableEntry& entry : model.tables)
-    if (const auto* core = dynamic_cast<const Core*>(entry.table.get())) {
-      const std::vector<std::string> limbs = core->all_limbs();
-      if (std::find(limbs.begin(), limbs.end(), limb) != limbs.end()) ++count;
-    }
+  for (const Core* core : tables_of<Core>(model)) {
+    const std::vector<std::string> limbs = core->all_limbs();
+    if (std::find(limbs.begin(), limbs.end(), limb) != limbs.end()) ++count;
+  }
   return count;
 }
 

@@ -2,6 +2,7 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/base/portable_math.h"
+#include "mbd/model/entries.h"
 #include "transformer/core/core_builder.h"
 #include "transformer/core/core_geometry.h"
 #include "transformer/core/core_sheet.h"
@@ -96,9 +97,8 @@ private:
 std::vector<Drawing::Limb> Drawing::limbs() const {
   std::vector<Limb> all;
   const Body& part = *model_.find_body(core_.active_part);
-  for (const TableEntry& entry : model_.tables) {
-    const auto* core = dynamic_cast<const Core*>(entry.table.get());
-    if (!core || core->active_part != core_.active_part) continue;
+  for (const Core* core : tables_of<Core>(model_)) {
+    if (core->active_part != core_.active_part) continue;
     const std::vector<std::string> names = core->all_limbs();
     for (std::size_t i = 0; i < names.size(); ++i) {
       const Body& body = *model_.find_body(names[i]);

@@ -1,5 +1,6 @@
 #include "transformer/core/core_windows.h"
 
+#include "mbd/model/entries.h"
 #include "transformer/core/core_builder.h"
 #include "transformer/core/core_geometry.h"
 
@@ -16,9 +17,8 @@ struct Standing {
 
 std::vector<Standing> limbs_of(const Body& active_part, const Model& model) {
   std::vector<Standing> limbs;
-  for (const TableEntry& entry : model.tables) {
-    const auto* core = dynamic_cast<const Core*>(entry.table.get());
-    if (!core || core->active_part != active_part.name) continue;
+  for (const Core* core : tables_of<Core>(model)) {
+    if (core->active_part != active_part.name) continue;
     const CoreGeometry geometry(*core);
     for (const std::string& name : core->all_limbs()) {
       const Mitre mitre = geometry.mitre(geometry.largest(), false);
