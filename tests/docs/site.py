@@ -25,7 +25,6 @@ QUESTIONS = {
     "how sure is the number": "explanation/trust",
     "wheel over a bump": "cookbook/bump",
     "hinge, pin": "reference/models",
-    "clearance of the core": "reference/core",
 }
 SHOWN = 2
 

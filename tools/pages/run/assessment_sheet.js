@@ -82,7 +82,7 @@ steplap.assessmentSheet = () => {
     const assumed = listed('Assumptions', A.assumptions, keep.assumptions, 'assumptions', none);
     if (!A.given) return [assumed];
     const unknown = A.unknown.flatMap((u) => u.list);
-    return [totals(keep), listed('What the decision hangs on', A.hangs, keep.hangs, 'values', 'Not examined.'), assumed,
+    return [totals(keep), listed('What the decision depends on', A.hangs, keep.hangs, 'values', 'Not examined.'), assumed,
       listed('Tests', A.tests, keep.tests, 'tests', 'No tests are named.'),
       listed('What the planar models do not know', unknown, keep.unknown, 'things', 'Not stated.')];
   }
