@@ -1,11 +1,11 @@
-# What `cmake --install` puts where, and the package that find_package(steplap) finds: docs/how-to/use_from_cpp.md. Each component is a
-# package of Debian (packages.cmake): program, study, development, python.
+# Installation of files by `cmake --install`, and the package that find_package(steplap) finds: docs/how-to/use_from_cpp.md. Each component
+# is a Debian package (packages.cmake): program, study, development, python.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
-# One name for all libraries up to transformer/. A program that links it gets no compile options and no warnings of ours, and needs no other
-# headers than Eigen's, which our types are made of. With BUILD_SHARED_LIBS it is one shared library that exports only steplap's
-# names (steplap.map); otherwise the archives.
+# One name for all libraries up to transformer/. A program that links it gets none of our compile options and warnings, and needs no other
+# headers than Eigen's, which are part of our types. With BUILD_SHARED_LIBS it is one shared library that exports only steplap's names
+# (steplap.map); otherwise it is the archives.
 set(parts base tape mbd io run patch_exact patch elements machinery step_lap catalog recorder transformer)
 list(TRANSFORM parts PREPEND steplap_ OUTPUT_VARIABLE archives)
 add_library(steplap_library INTERFACE)
@@ -40,7 +40,7 @@ else()
   endif()
 endif()
 
-# Programs write <steplap/model.h>; the headers behind it include each other as "mbd/…".
+# Programs include <steplap/model.h>; the headers behind it include each other as "mbd/…".
 install(TARGETS ${libraries} EXPORT steplap COMPONENT development
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
@@ -64,7 +64,7 @@ file(RELATIVE_PATH steplap_pc_up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /) # whereve
 configure_file(cmake/steplap.pc.in steplap.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/steplap.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 install(TARGETS steplap RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
-# bin/steplap looks for it at ../libexec, in the build tree as well.
+# bin/steplap searches for it at ../libexec, also in the build tree.
 if(TARGET steplap-study)
   install(TARGETS steplap-study RUNTIME DESTINATION libexec COMPONENT study)
 endif()
@@ -73,8 +73,8 @@ install(FILES tools/editors/steplap.lua tools/editors/taplo_lsp.js DESTINATION $
 install(FILES LICENSE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap COMPONENT program)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap COMPONENT program
   FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" REGEX "/cookbook/[^/]*\\.toml$")
-# Notices of the packages that each component contains parts of. The table's third column says what contains them; the program and the
-# module of Python are linked with the library.
+# Licence notices of the packages that each component contains code of. The third column of the table names the components; the program and
+# the Python module are linked with the library.
 set(steplap_notices_program steplap "library|programs")
 set(steplap_notices_study steplap-study "library|programs|steplap-study")
 set(steplap_notices_development libsteplap-dev "library")

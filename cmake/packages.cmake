@@ -1,4 +1,4 @@
-# Packages of Debian from a build, component by component (install.cmake): tools/package.
+# Debian packages from a build, one per component (install.cmake): tools/package.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME steplap)
 set(CPACK_PACKAGE_VENDOR steplap)
@@ -14,7 +14,7 @@ set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER "The steplap developers <steplap@example.org>")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 
-# Name, section, what it depends on besides the shared objects that its files load, and what it is.
+# Name, section, dependencies other than shared libraries, description.
 function(steplap_package component name section depends summary text)
   string(TOUPPER ${component} upper)
   foreach(setting "PACKAGE_NAME ${name}" "PACKAGE_SECTION ${section}" "PACKAGE_DEPENDS ${depends}")
@@ -27,7 +27,7 @@ function(steplap_package component name section depends summary text)
   set(CPACK_DEBIAN_${upper}_DESCRIPTION "${summary}\n${text}" PARENT_SCOPE)
   set(CPACK_COMPONENT_${upper}_DESCRIPTION "${summary}\n${text}" PARENT_SCOPE)
   set(packaged ${packaged} ${component} PARENT_SCOPE)
-  # What every package of Debian has to say: who may copy it, and what changed.
+  # Files that every Debian package must have: copyright and changes.
   install(FILES ${PROJECT_BINARY_DIR}/debian/copyright ${PROJECT_BINARY_DIR}/debian/changelog.gz DESTINATION share/doc/${name} COMPONENT ${component} EXCLUDE_FROM_ALL)
   install(FILES cmake/debian/${name}.lintian-overrides DESTINATION share/lintian/overrides RENAME ${name} COMPONENT ${component} EXCLUDE_FROM_ALL OPTIONAL)
 endfunction()
@@ -69,7 +69,7 @@ if(TARGET steplap_python)
 "Models, runs and verdicts of steplap from Python: trajectories as arrays of
 numpy without copies, many runs on all processors, errors with their places.")
 endif()
-# What the packages contain, without tests: tools/package builds it.
+# Targets that the packages contain, without tests: tools/package builds them.
 add_custom_target(packaged)
 foreach(target steplap steplap-study steplap_python)
   if(TARGET ${target})

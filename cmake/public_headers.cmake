@@ -1,6 +1,6 @@
-# The public headers. A program on the library includes <steplap/NAME> and nothing else of steplap. The names below, and what their
-# headers declare, stay when sources move; all other headers are installed only because these include them, under
-# <steplap/internal/…>, and may change in any version. docs/how-to/use_from_cpp.md has the same table for users.
+# The public headers. A program on the library includes only <steplap/NAME>. These names and the declarations in their headers remain when
+# sources move; all other headers are installed under <steplap/internal/…> because these include them, and may change in any version.
+# docs/how-to/use_from_cpp.md has the same table for users.
 # install.cmake and tests/architecture/test_public_headers.cpp read this file.
 
 cmake_policy(VERSION 3.25) # of the functions, also when they are read by an installation

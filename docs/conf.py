@@ -4,6 +4,8 @@ import os
 import pathlib
 import re
 
+from sphinx.search.en import SearchEnglish
+
 root = pathlib.Path(__file__).resolve().parent.parent
 
 project = "steplap"
@@ -30,6 +32,8 @@ html_copy_source = False
 html_extra_path = ["site/index.html"]  # leads from the top of the site to docs/index.html
 pygments_style = "tango"
 pygments_dark_style = "monokai"
+# The search requires every word of a question on the page. Without question words a whole sentence finds pages by its nouns and verbs.
+SearchEnglish.stopwords = SearchEnglish.stopwords | {"can", "do", "does", "how", "i", "my", "what", "which", "why"}
 smartquotes = False  # a curly quote that is copied from a page is an error in TOML
 
 # The complete reference of elements and of the command line, made by tools/site/reference_pages, replaces the short pages of the same name.

@@ -286,8 +286,8 @@ const TableKind& action_kind() {
     using T = Action;
     TableKind k;
     k.name = "action";
-    k.doc = "Something that happens when a condition comes true: an element lets go or begins to hold, a brake is set, the run ends. "
-            "`docs/reference/actions.md` tells what it may say.";
+    k.doc = "Something that happens when a condition comes true: an element is released or begins to act, a brake is set, the run ends. "
+            "Syntax: `docs/reference/actions.md`.";
     FieldTable& f = k.fields;
     f.add("when", &T::when)
         .required()

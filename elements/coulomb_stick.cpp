@@ -24,7 +24,7 @@ public:
   SegmentMeasure segment;
 
   [[nodiscard]] bool record_friction(TracedEvaluation&, const FrictionState&, const TapeNumber*, TapeNumber*, TapeNumber*) const override {
-    return false; // the contact point has branches of its own
+    return false; // the contact point depends on comparisons
   }
   [[nodiscard]] double contact_point_event(const Evaluation& e, const FrictionState& state) const override {
     const Pair<double> p = segment.place(e.motion[feet[0].a], e.motion[feet[0].b]);
@@ -57,7 +57,7 @@ RowSpec slide_row(const ContactGeometry& g, int base) {
 // Reports a contact that is in two friction elements, because its normal force would count twice.
 bool is_claimed(const CoulombStick& e, SystemBuilder& builder) {
   const auto refuse = [&builder](const std::string& contact, const std::string& where) {
-    builder.error("'" + contact + "' stands in 'contacts' " + where + ": its normal force would bear friction twice");
+    builder.error("'" + contact + "' stands in 'contacts' " + where + ": its normal force would be used for friction twice");
     return true;
   };
   for (auto contact = e.contacts.begin(); contact != e.contacts.end(); ++contact)

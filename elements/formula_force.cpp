@@ -303,9 +303,8 @@ const ElementKind& formula_force_kind() {
     using T = FormulaForce;
     ElementKind k;
     k.name = "force";
-    k.doc =
-        "A force or couple on a along a coordinate, its opposite on b, whose value is a formula of places, angles, velocities, states, "
-        "signals, parameters and time: drag, magnets, tyres, controllers. `docs/reference/formulas_of_forces.md` tells what it may hold.";
+    k.doc = "A force or couple on a along a coordinate, its opposite on b, whose value is a formula of places, angles, velocities, states, "
+            "signals, parameters and time: drag, magnets, tyres, controllers. Syntax: `docs/reference/formulas_of_forces.md`.";
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that it acts on");
     f.add("b", &T::b).as(FieldType::marker).doc("marker that its opposite acts on, whose axes count");

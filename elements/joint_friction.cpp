@@ -190,7 +190,7 @@ const ElementKind& joint_friction_kind() {
     using T = JointFriction;
     ElementKind k;
     k.name = "joint_friction";
-    k.doc = "Dry friction with a bound of its own on a coordinate of a against b, as of a preloaded bearing or guide, a brake or a "
+    k.doc = "Dry friction with a given bound on a coordinate of a against b, as of a preloaded bearing or guide, a brake or a "
             "clutch: sticks exactly while it takes no more than 'holds'. It does not follow the joint's reaction.";
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that is held");

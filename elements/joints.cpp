@@ -59,7 +59,7 @@ void add(SystemBuilder& builder, std::vector<RowSpec> rows, bool is_rigid = fals
   if (rows.size() > 1 && rows[1].kind == MeasureKind::axis)
     builder.offer_channel("reaction", "N", {"size of the reaction force", "never negative"},
                           [first](const Snapshot& s) { return portable::hypot(s.row_force[first], s.row_force[first + 1]); });
-  builder.offer_channel("power", "W", "power that the reactions give: none but error of the computation",
+  builder.offer_channel("power", "W", "power of the reactions: zero up to numerical error",
                         [held, count = static_cast<int>(rows.size()), first](const Snapshot& s) {
                           double power = 0.0;
                           for (int i = 0; i < count; ++i) power += s.row_force[first + i] * evaluate_row<false>(held[i], s.motion).rate;
@@ -181,7 +181,7 @@ const ElementKind& revolute_kind() {
     ElementKind k = joint_kind("revolute", "A pin: the two markers stay together, the bodies turn freely.", compile_revolute);
     k.fields.add("angle", &Joint::angle)
         .in("rad")
-        .doc("of marker a's axes against marker b's in the reference pose: places the body that has no pose of its own");
+        .doc("of marker a's axes against marker b's in the reference pose: places the body without a given pose");
     k.fields.add("angular_velocity", &Joint::angular_velocity).in("rad/s").doc("with 'angle': its rate at the start; 0 if not given");
     k.example = R"([[element]]
 name = 'pin'
@@ -199,7 +199,7 @@ const ElementKind& prismatic_kind() {
     add_axis(k.fields);
     k.fields.add("displacement", &Joint::displacement)
         .in("m")
-        .doc("of marker a from marker b along the axis in the reference pose: places the body that has no pose of its own");
+        .doc("of marker a from marker b along the axis in the reference pose: places the body without a given pose");
     k.fields.add("angle", &Joint::angle).in("rad").doc("with 'displacement': of marker a's axes against marker b's; 0 if not given");
     k.fields.add("speed", &Joint::speed).in("m/s").doc("with 'displacement': its rate at the start; 0 if not given");
     k.example = R"([[element]]
@@ -219,7 +219,7 @@ const ElementKind& weld_kind() {
         joint_kind("weld", "Holds a and b together as in the reference pose; the two are integrated as one body.", compile_weld);
     k.fields.add("angle", &Joint::angle)
         .in("rad")
-        .doc("of marker a's axes against marker b's: places the body that has no pose of its own, marker on marker");
+        .doc("of marker a's axes against marker b's: places the body without a given pose, marker on marker");
     k.example = R"([[element]]
 name = 'weld'
 kind = 'weld'

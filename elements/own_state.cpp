@@ -79,15 +79,13 @@ const TableKind& own_state_kind() {
     using T = OwnState;
     TableKind k;
     k.name = "state";
-    k.doc = "A number that follows a differential equation of its own: a filter, the integral of a controller, a current, a temperature. "
+    k.doc = "A number with its own differential equation: a filter, the integral of a controller, a current, a temperature. "
             "Formulas of forces and of other states read it by its name. Methods that step over events do not follow it.";
     FieldTable& f = k.fields;
     f.add("unit", &T::unit).doc("unit of its value, one that formulas know; A and K count as numbers there, as radians do");
-    f.add("start", &T::start).doc("its value at the start, in its unit; an equilibrium is sought with it as it is");
+    f.add("start", &T::start).doc("initial value, in its unit; it is constant in the search for equilibrium");
     f.add("rate", &T::rate).required().doc("formula of its change per second: \"(target - filtered) / '0.2 s'\"");
-    f.add("scale", &T::scale)
-        .positive()
-        .doc("what it is usually like, in its unit, for the control of its error; not given: the size of its start, or 1");
+    f.add("scale", &T::scale).positive().doc("typical size, in its unit, for error control; default: the size of its start, or 1");
     f.add("meaning", &T::meaning).doc("what it is, for lists and reports; the formula if not given");
     f.add("sign", &T::sign).doc("when it is positive");
     k.holds<T>();

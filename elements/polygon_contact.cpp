@@ -246,7 +246,7 @@ public:
   void mark_bodies(std::vector<char>& is_used) const override { is_used[a] = is_used[b] = 1; }
 
   [[nodiscard]] bool record_friction(TracedEvaluation&, const FrictionState&, const TapeNumber*, TapeNumber*, TapeNumber*) const override {
-    return false; // the contact point has branches of its own
+    return false; // the contact point depends on comparisons
   }
   [[nodiscard]] double contact_point_event(const Evaluation& e, const FrictionState& state) const override {
     const Placed<double, Motion<double>> placed(*outlines, e.motion[a], e.motion[b]);

@@ -98,7 +98,7 @@ const ElementKind& prescribed_motion_kind() {
     using T = PrescribedMotion;
     ElementKind k;
     k.name = "prescribed_motion";
-    k.doc = "A coordinate of a against b follows a signal exactly; the reaction is what it takes.";
+    k.doc = "A coordinate of a against b follows a signal exactly; the reaction is the force required.";
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that is driven");
     f.add("b", &T::b).as(FieldType::marker).doc("marker whose axes count");

@@ -200,7 +200,7 @@ const TableKind& shape_kind() {
     using T = BodyShape;
     TableKind k;
     k.name = "shape";
-    k.doc = "An area of a body, from which the body gets what it does not give itself: mass, centre of gravity, inertia, outline. An "
+    k.doc = "An area of a body that determines its missing properties: mass, centre of gravity, inertia, outline. An "
             "outline or a disc, with holes; "
             "several shapes of a body add up.";
     FieldTable& f = k.fields;

@@ -1,4 +1,4 @@
-// Channel "share" of dry friction of one dimension: how much of what holds is used, both at the same instant.
+// Channel "share" of dry friction of one dimension: friction force over its bound at the same instant.
 #pragma once
 
 #include "mbd/system/slight_force.h"
@@ -14,8 +14,8 @@ namespace steplap {
 ///   slips   1, unless nothing holds at all
 ///   free    0
 ///
-/// Below a slight bound (slight_force()) the share of the slight bound counts: what is pressed by less holds nothing worth
-/// reporting, and its λ is rounding.
+/// A bound below slight_force() is replaced by it: a contact with less normal force carries nothing worth reporting, and its λ is
+/// rounding.
 inline void add_share_channel(SystemBuilder& builder, const FrictionElement& friction) {
   const double slight = slight_force(builder.compiled(), *friction.rows({}));
   const auto share = [self = &friction, f = builder.next_friction(), slot = builder.next_friction_row(), slight](const Snapshot& s) {
@@ -26,8 +26,8 @@ inline void add_share_channel(SystemBuilder& builder, const FrictionElement& fri
     const double force = std::abs(s.friction_force[slot]);
     return force > 0.0 ? std::min(1.0, force / std::max(bound, slight)) : 0.0; // λ may pass its bound by rounding
   };
-  // A share is never below zero: where it was zero once, only its largest value is looked for. At each reversal of λ it has a kink
-  // there, which would cost several evaluations. Nor is it above 1, which it has reached where it has slipped.
+  // Bounds of the share: at least 0, and at most 1, which it has reached once it has slipped. They save the search for extremes several
+  // evaluations at the kink of each reversal of λ.
   Channel& channel = builder.add_channel(
       "share", "", {"force over what holds at the same instant; 1 where it slips, 0 without load", "never negative"}, share);
   channel.role = ChannelRole::friction_use;

@@ -79,7 +79,7 @@ bool check(const UnilateralContact& e, SystemBuilder& builder) {
   if (e.law == "hunt_crossley" && e.damping != 0.0) fail("Hunt-Crossley takes 'dissipation' instead of 'damping'");
   if (e.restitution && e.damping != 0.0) fail("give 'damping' or 'restitution', not both");
   if (e.restitution && e.law != "kelvin_voigt")
-    fail("'restitution' is of law = \"kelvin_voigt\", whose rebound does not hang on the speed");
+    fail("'restitution' is of law = \"kelvin_voigt\", whose rebound does not depend on the speed");
   if (e.law != "hunt_crossley" && (e.exponent != 1.0 || e.dissipation != 0.0))
     fail("'exponent' and 'dissipation' belong to law = \"hunt_crossley\"");
   if (e.ends && !(e.ends->x() < e.ends->y())) fail("'ends' are the lower and the higher end: the first must be less");

@@ -22,7 +22,7 @@ class NoAnswer(Exception):
 
 
 def worst(scene, summary, exact, rough):
-    """The largest difference over what is allowed, and where; None for the first if some error is unknown."""
+    """Returns the largest ratio of difference and allowed difference, and its place; None as ratio if an error is unknown."""
     ratio, where = 0.0, ""
     for name, value, error, place in scene.finals(summary):
         if error is None:
@@ -35,7 +35,7 @@ def worst(scene, summary, exact, rough):
 
 
 def outcome(given, scene, path, folder, integrator, exact, rough):
-    """How one run came out, and what to say of it."""
+    """Result of one run, and its message."""
     run = subprocess.run([given.program, "simulate", path, "-o", folder, "--force", "--estimate-error", "-q", "--integrator", integrator], capture_output=True, text=True)
     if run.returncode != 0:
         return "stop", run.stderr.strip().splitlines()[0]
@@ -50,7 +50,7 @@ def outcome(given, scene, path, folder, integrator, exact, rough):
 
 
 def main(description, scene_of, tolerances):
-    """`tolerances`: two of SciPy's, the finer one first."""
+    """`tolerances`: two tolerances of SciPy, the finer one first."""
     arguments = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("first", type=int)
     arguments.add_argument("last", type=int)

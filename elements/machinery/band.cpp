@@ -80,7 +80,7 @@ void add_shared_channels(const Group& group, int i, SystemBuilder& builder) {
       .add_channel("share", "", "of what friction can hold, by the logarithm of the ratio of tensions; 1 where it slides",
                    [&group, i](const Snapshot& s) { return share_of(group.flow_now(i, *s.evaluation)); })
       .role = ChannelRole::friction_use;
-  builder.add_channel("mode", "", {"what it does", "", "0 loose, 1 sticks, 2 slides"},
+  builder.add_channel("mode", "", {"state", "", "0 loose, 1 sticks, 2 slides"},
                       [unit = group.entries[static_cast<std::size_t>(i)].unit](const Snapshot& s) {
                         const UnitMode mode = s.evaluation->mode[unit];
                         return mode < Group::k_sticks ? 0.0 : mode == Group::k_sticks ? 1.0 : 2.0;
@@ -185,7 +185,7 @@ const ElementKind& band_kind() {
         .in("m")
         .required()
         .doc("of the drum: positive where it goes round it counter-clockwise on the way from a to b, negative where clockwise");
-    f.add("turns", &T::turns).at_least(0).at_most(100).doc("whole turns round the drum, besides the angle between its free parts");
+    f.add("turns", &T::turns).at_least(0).at_most(100).doc("whole turns round the drum, in addition to the angle between its free parts");
     f.add("friction", &T::friction).positive().at_most(10.0).required().doc("coefficient between band and drum");
     f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc("of the free part at a");
     f.add("stiffness_b", &T::stiffness_b).in("N/m").positive().doc("of the free part at b; default: as at a");

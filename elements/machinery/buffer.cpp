@@ -171,7 +171,7 @@ void compile_buffer(const Element& element, SystemBuilder& builder) {
                       [&group, i](const Snapshot& s) { return -group.measured(i, *s.evaluation).rate; });
   builder.add_channel("force", "N", {"of spring and friction, zero while open", "positive: it presses"},
                       [&group, i, slot](const Snapshot& s) { return group.force_of(i, *s.evaluation) + s.friction_force[slot]; });
-  builder.add_channel("mode", "", {"what it does", "", "0 open, 1 sticks, 2 moves"},
+  builder.add_channel("mode", "", {"state", "", "0 open, 1 sticks, 2 moves"},
                       [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
   builder.add_friction(std::move(friction));
 }
@@ -195,7 +195,7 @@ const ElementKind& buffer_kind() {
         .doc("[depth, force] while it is pressed in, from [0, 0] on, straight between them and on beyond the last");
     f.add("unloading", &T::unloading)
         .in("m", "N")
-        .doc("the same while it comes out again, beyond the last point parallel to loading; default: as pressed in");
+        .doc("the same during release, beyond the last point parallel to loading; default: as for compression");
     f.add("gap", &T::gap).in("m").doc("what is left in the reference pose; negative: pressed in by so much");
     f.add("count", &T::count).at_least(1).doc("equal buffers side by side");
     k.example = R"([[element]]

@@ -200,8 +200,8 @@ std::optional<LiftCurve> curve_of(const Cam& e, SystemBuilder& builder) {
   const std::optional<std::vector<Vec2>> closed = closed_turn(e.lift);
   if (closed) return LiftCurve(*closed);
   return fail("'lift' spans " + rounded_text(span * 360.0 / turn, 4) + " degrees of a turn, from " + rounded_text(e.lift.front().x()) +
-              " to " + rounded_text(e.lift.back().x()) + " rad, and says nothing of the rest. Add points up to [" +
-              rounded_text(e.lift.front().x() + turn, 12) + ", " + rounded_text(e.lift.front().y()) +
+              " to " + rounded_text(e.lift.back().x()) + " rad only. Add points up to [" + rounded_text(e.lift.front().x() + turn, 12) +
+              ", " + rounded_text(e.lift.front().y()) +
               "], a whole turn behind the first one and with its lift; a dwell is points of equal lift");
 }
 
@@ -209,8 +209,7 @@ void compile_cam(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const Cam&>(element);
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b), cam = builder.marker(e.cam);
   if (a.body == b.body) return builder.error("lifts a body against itself: name markers on two different bodies");
-  if (cam.body == a.body || cam.body == b.body)
-    return builder.error("'cam' has to be a body of its own: neither that of the follower nor that of the frame");
+  if (cam.body == a.body || cam.body == b.body) return builder.error("'cam' must be a separate body, neither the follower nor the frame");
   if (e.axis.norm() == 0.0) return builder.error("'axis' has no direction");
   std::optional<LiftCurve> curve = curve_of(e, builder);
   if (!curve) return;

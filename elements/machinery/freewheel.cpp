@@ -107,7 +107,7 @@ void compile_freewheel(const Element& element, SystemBuilder& builder) {
                       [slot](const Snapshot& s) { return s.friction_force[slot]; });
   builder.add_channel("slip_rate", "rad/s", {"rate of a against b", "positive counter-clockwise"},
                       [self](const Snapshot& s) { return evaluate_row<false>(self->row, s.motion).rate; });
-  builder.add_channel("mode", "", {"what it does", "", "1 locked, 2 free or slipping"},
+  builder.add_channel("mode", "", {"state", "", "1 locked, 2 free or slipping"},
                       [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
   builder.add_channel("impulse", "N m s", {"of the last blow that locked it, zero before the first", "never negative"},
                       [impact = clutch->impact](const Snapshot& s) { return s.impacts[impact].impulse; });

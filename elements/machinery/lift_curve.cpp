@@ -70,7 +70,7 @@ public:
 private:
   static constexpr int k_shallow = 4, k_deepest = 14; // halvings: 0.39 rad, 0.4 mrad
   static constexpr double k_least_lobe = 1e-4;        // of the lift
-  static constexpr double k_beyond = 3.0;             // of what the places differ by
+  static constexpr double k_beyond = 3.0;             // by this factor of the sampled values' range the bounds may exceed it
 
   double value(double angle) {
     const std::vector<double> operands(operands_, angle);

@@ -178,7 +178,7 @@ const ElementKind& lossy_gear_kind() {
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("shaft that usually drives");
     f.add("b", &T::b).as(FieldType::marker).required().doc("shaft that is usually driven");
-    f.add("carrier", &T::carrier).as(FieldType::marker).doc("what bears both");
+    f.add("carrier", &T::carrier).as(FieldType::marker).doc("body that carries both wheels");
     f.add("ratio", &T::ratio).required().doc("turns of a to one of b; negative: they turn against each other");
     f.add("efficiency", &T::efficiency).positive().at_most(1.0).doc("power at b of that at a, where a drives");
     f.add("stiffness", &T::stiffness).in("N m/rad").positive().required().doc("of the teeth, at shaft a");

@@ -40,13 +40,13 @@ void add_channels(const RollingFriction& friction, SystemBuilder& builder) {
   add_share_channel(builder, friction);
   builder.add_channel("slip_rate", "rad/s", {"with which a turns over b", "positive counter-clockwise"},
                       [self, f](const Snapshot& s) { return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate; });
-  builder.add_channel("mode", "", {"what it does", "", "0 in the air, 1 holds, 2 rolls"},
+  builder.add_channel("mode", "", {"state", "", "0 in the air, 1 holds, 2 rolls"},
                       [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
 }
 
 void compile_rolling_resistance(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const RollingResistance&>(element);
-  if (e.contacts.size() != 1) return builder.error("name one contact in 'contacts': each that rolls has a resistance of its own");
+  if (e.contacts.size() != 1) return builder.error("name one contact in 'contacts': each rolling contact needs its own rolling_resistance");
   const std::string& name = e.contacts.front();
   const ElementEntry* const entry = builder.element(name);
   const auto ends = entry ? ends_of(*entry->element) : std::nullopt;

@@ -52,7 +52,7 @@ public:
   };
   struct PartLength {
     const RopePart* part = nullptr;
-    double length = std::numeric_limits<double>::infinity(); ///< length in excess of what counts as none, m
+    double length = std::numeric_limits<double>::infinity(); ///< length in excess of one that counts as zero, m
   };
   std::vector<ElementData> entries;
 

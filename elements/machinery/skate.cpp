@@ -68,7 +68,7 @@ void add_held(RowSpec row, SystemBuilder& builder) {
   builder.add_channel("force", "N", {"reaction on a, across its axis", "positive: to the left of its axis"},
                       [r](const Snapshot& s) { return s.row_force[r]; });
   add_speed(row, builder);
-  builder.offer_channel("power", "W", "power that the reaction gives: none but error of the computation",
+  builder.offer_channel("power", "W", "power of the reaction: zero up to numerical error",
                         [row, r](const Snapshot& s) { return s.row_force[r] * evaluate_row<false>(row, s.motion).rate; });
   builder.add_rows({row});
 }
@@ -86,7 +86,7 @@ void add_gripping(RowSpec row, double grip, double drags, SystemBuilder& builder
   add_speed(row, builder);
   builder.add_channel("slip_rate", "m/s", {"with which it slides across its axis", "positive: to the left"},
                       [row](const Snapshot& s) { return evaluate_row<false>(row, s.motion).rate; });
-  builder.add_channel("mode", "", {"what it does", "", "1 runs along its axis, 2 slides across it"},
+  builder.add_channel("mode", "", {"state", "", "1 runs along its axis, 2 slides across it"},
                       [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
   builder.add_friction(std::move(friction));
 }

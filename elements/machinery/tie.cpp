@@ -281,7 +281,7 @@ const ElementKind& tie_kind() {
     using T = Tie;
     ElementKind k;
     k.name = "tie";
-    k.doc = "What bears beside a joint: tie plates, clamping bolts, bindings, resin, a winding round a limb. A spring "
+    k.doc = "Parts that carry load in parallel with a joint: tie plates, clamping bolts, bindings, resin, a winding round a limb. A spring "
             "between "
             "two markers that pulls, presses or both, with slack, preload and a strength at which it breaks for good.";
     FieldTable& f = k.fields;
@@ -296,7 +296,7 @@ const ElementKind& tie_kind() {
     f.add("slack", &T::slack).in("m").not_negative().doc("elongation without force, on each side on which it acts");
     f.add("preload", &T::preload).in("N").doc("of all in the reference pose, tension positive");
     f.add("strength", &T::strength).in("N").positive().doc("size of the force at which one breaks; not given: it does not");
-    f.add("on_break", &T::on_break).one_of({"continue", "stop"}).doc("whether the run goes on without it");
+    f.add("on_break", &T::on_break).one_of({"continue", "stop"}).doc("whether the run continues without it");
     f.add("consequence", &T::consequence)
         .one_of({"reject", "inspect", "none"})
         .doc("what its breaking means for the verdict; none: it is meant to give way first, such as resin");

@@ -17,7 +17,7 @@ struct Tie : Element {
   double across = 0.0;          ///< distance of its ends across the plane, m
   std::string acts = "tension"; ///< "tension", "compression", "both"
   double stiffness = 0.0, damping = 0.0;
-  double slack = 0.0;                 ///< m, on each side on which it acts
+  double slack = 0.0;                 ///< m, free travel on each side on which it acts
   std::optional<double> preload;      ///< total preload in the reference pose, N, tension positive
   std::optional<double> strength;     ///< strength of one tie, N
   std::string on_break = "continue";  ///< "continue" or "stop"

@@ -135,7 +135,7 @@ const ElementKind& tyre_kind() {
         .positive()
         .required()
         .doc("sigma: way over which the force follows the slip; at standstill the tread is a spring C/sigma");
-    f.add("tread_damping", &T::tread_damping).in("N s/m").positive().required().doc("b, of the bristles, beside that spring");
+    f.add("tread_damping", &T::tread_damping).in("N s/m").positive().required().doc("b, of the bristles, parallel to their spring");
     k.example = R"([[element]]
 name = 'wheel'
 kind = 'tyre'

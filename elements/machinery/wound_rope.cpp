@@ -102,7 +102,8 @@ private:
   static void check(const ElementData& entry, const WoundMeasure::Straight<double>& part) {
     const WoundMeasure& measure = entry.measure;
     if (part.length < entry.shortest)
-      throw ElementFailure("what hangs on wound_rope '" + entry.name + "' has run onto its wheel: a limit keeps it off", {entry.name});
+      throw ElementFailure("the load on wound_rope '" + entry.name + "' has run onto its wheel: add a limit that stops it before",
+                           {entry.name});
     if (measure.radius_a + measure.radius_b == 0.0 || !(std::abs(measure.turned(part.u)) > k_most_turned)) return;
     throw ElementFailure("wound_rope '" + entry.name + "' has turned by half a turn against the reference pose: so far it is not followed",
                          {entry.name});

@@ -49,7 +49,7 @@ void judge_least(const JointAssessment& joint, const Extreme& least, const char*
   criteria.push_back(result);
 }
 
-// Judges each corner and packet by itself; the others do not compensate for it.
+// Judges each corner and packet alone; the others do not compensate for it.
 void judge_shares(const JointAssessment& joint, std::vector<CriterionResult>& criteria) {
   if (joint.verdict == JointVerdict::not_assessed) return;
   judge_least(joint, joint.least_pressure, ".least_pressure", "every interface is pressed: pressure > 0 Pa", 0.0, Verdict::reject,
@@ -112,7 +112,7 @@ void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& c
 // them; whether the joint slips is then unknown.
 std::string contradiction_of(const JointAssessment& joint, const SimulationSettings& settings) {
   const char* does = joint.contradicts_itself() ? "holds" : joint.bears_too_much() ? "slides" : "";
-  const std::string then = joint.contradicts_itself() ? "it has to slip" : "nothing bears what it is said to bear";
+  const std::string then = joint.contradicts_itself() ? "it has to slip" : "no element carries the stated load";
   if (*does == '\0') return "";
   return "'" + joint.joint + "' " + does + " with a margin of " + limit_text(joint.smallest_margin) +
          " at t = " + limit_text(joint.time_of_smallest) + " s, and below 1 " + then + ": " + remedy(settings);

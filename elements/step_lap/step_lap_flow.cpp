@@ -1,5 +1,5 @@
 // Yielding of an elastic step-lap joint: slip rate, its direction, and their derivatives for implicit methods. The direction follows from
-// the wrench or, at a corner of the limit surface, is a state of its own. Twists along a direction are scaled(); wrenches are scaled
+// the wrench or, at a corner of the limit surface, is a separate state. Twists along a direction are scaled(); wrenches are scaled
 // accordingly, about the joint's centre with the moment divided by the radius of gyration.
 #include "elements/step_lap/step_lap_fit.h"
 #include "mbd/base/diagnostics.h"
@@ -46,7 +46,7 @@ double lesser_curvature(const Mat3& c) {
 
 void StepLapFriction::refuse_snap(double t) const {
   throw NumericalFailure("step_lap_joint '" + name_ + "', t = " + number_text(t) +
-                         " s: loses overlap faster than its stiffness lets go of the load: it snaps through. Give it more "
+                         " s: loses overlap faster than its spring releases the load: it snaps through. Give it more "
                          "tangential stiffness, or leave it rigid");
 }
 

@@ -186,7 +186,7 @@ const ElementKind& step_lap_interface_kind() {
         .in("Pa s^2/m")
         .not_negative()
         .doc("by how much more or less than that the pressure grows at the outermost of its sheets: density × half the depth "
-             "of this packet; tells when the first of them come loose");
+             "of this packet; shows when the first of them come loose");
     f.add("static_friction", &T::static_friction).positive().required().doc("mu_s");
     f.add("kinetic_friction", &T::kinetic_friction).positive().doc("mu_k; default: mu_s");
     f.add("count", &T::count).positive().doc("number of equal interfaces in the stack");

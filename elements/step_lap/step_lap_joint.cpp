@@ -455,7 +455,7 @@ void add_edge_fields(FieldTable& f) {
   f.add("edge_stiffness", &T::edge_stiffness)
       .in("N/m^2")
       .positive()
-      .doc("of sheet edges that bear on each other once a clearance has closed: line load over depth, of all sheets "
+      .doc("of sheet edges that press on each other once a clearance has closed: line load over depth, of all sheets "
            "at a corner. "
            "Without it sheets pass each other freely, and a closed clearance is only reported");
   f.add("allowed_line_load", &T::allowed_line_load)
@@ -485,7 +485,7 @@ const ElementKind& step_lap_joint_kind() {
     f.add("mode", &T::mode).one_of({"slip", "monitor"}).doc("monitor: never slides, but reports the pressure that it would take");
     f.add("on_apart", &T::on_apart)
         .one_of({"stop", "continue"})
-        .doc("what happens when no overlap is left: the run ends, or goes on without friction");
+        .doc("when no overlap is left: the run ends, or continues without friction");
     add_elastic_fields(f);
     add_edge_fields(f);
     f.add("pressure_signal", &T::pressure_signal).as(FieldType::signal).doc("factor of all its pressures in time, above 0; not given: 1");
@@ -503,7 +503,7 @@ const ElementKind& step_lap_joint_kind() {
         .positive()
         .at_most(1.0)
         .limit()
-        .doc("largest displacement of a corner that is borne, a share of the width of its overlap: reject beyond it");
+        .doc("largest permitted displacement of a corner, as a share of the width of its overlap: reject beyond it");
     k.holds<T>();
     k.compile = compile_joint;
     k.example = k_example;

@@ -79,7 +79,7 @@ void add_share_channels(SystemBuilder& builder, const StepLapFriction& friction,
   const auto demand = [self](const Snapshot& s) { return self->wrench(s).head<2>().norm(); };
   if (shares->corner_count() > 1)
     builder.add_channel("corner_margin", "",
-                        "of the corner that holds least by itself: capacity over its share of the limb's weight, one corner like the other",
+                        "of the weakest corner alone: capacity over its share of the limb's weight, equal for all corners",
                         [self, shares](const Snapshot& s) { return shares->corner_margin(self->pressure_at(s.t)); });
   if (shares->has_parts())
     builder.add_channel(

@@ -1,4 +1,4 @@
-// Capacity of each corner and each packet of a step-lap joint by itself.
+// Capacity of each corner and each packet of a step-lap joint alone.
 //
 // The limit surface is that of the whole joint: a corner without clamping, or a packet of sheets without pressure, is compensated by the
 // others in the sum although its own sheets are not held. Each must therefore hold its own share as well. A packet moves with the limb and

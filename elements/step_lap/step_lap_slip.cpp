@@ -21,7 +21,7 @@ constexpr double k_cone = 0.5; // cosine of the angle about the stored direction
 // Time |ν|/(grip acceleration) below which a slip ends, s: k_end_time, or k_end_share times the tolerance, at most k_most_end_time. The
 // neglected rest of the slip is proportional to this time and to the remaining change of direction.
 constexpr double k_end_share = 1e-2, k_most_end_time = 1e-8;
-constexpr double k_no_end = 2.0; // factor on that |ν|: beyond it the joint has not come to rest
+constexpr double k_no_end = 2.0; // factor on that |ν|: above it the slip has not ended
 // Rounding limits: |ν| relative to velocities at which its direction is lost, and that time relative to t at which steps are still well
 // above rounding.
 constexpr double k_rounded_speed = 2.5e-13, k_time_rounding = 2e-12;
@@ -29,10 +29,10 @@ constexpr double k_rounded_speed = 2.5e-13, k_time_rounding = 2e-12;
 // Values of FrictionState::stage, initially 0: for a starting slip, and for an ending slip.
 constexpr std::uint8_t k_moving_stage = 1, k_ending_stage = 1;
 
-template <class Look> void for_each_corner(const Polygon& polygon, Look look) {
-  for (const Vec2& corner : polygon.outer) look(corner);
+template <class Visit> void for_each_corner(const Polygon& polygon, Visit visit) {
+  for (const Vec2& corner : polygon.outer) visit(corner);
   for (const Ring& hole : polygon.holes)
-    for (const Vec2& corner : hole) look(corner);
+    for (const Vec2& corner : hole) visit(corner);
 }
 
 bool is_moving(const FrictionState& state) { return state.is_onset && state.onset_stage == k_moving_stage; }

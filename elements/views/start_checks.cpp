@@ -63,7 +63,7 @@ void check_ends(StartScene& scene, const ContactAtStart& contact, const Unilater
   });
   if (is_elsewhere) return;
   scene.add("foot_beside_face", foot.where,
-            "'" + foot.name + "' begins " + short_length(beyond) + " beside its face: marker a is at " + three_digits(*contact.along) +
+            "'" + foot.name + "' begins " + short_length(beyond) + " outside its face: marker a is at " + three_digits(*contact.along) +
                 " m along it, and 'ends' are " + three_digits(foot.ends->x()) + " m and " + three_digits(foot.ends->y()) +
                 " m, counted along (n_y, -n_x) from marker b. Nothing carries it there");
 }

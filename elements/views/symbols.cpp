@@ -183,7 +183,7 @@ std::vector<Vec2> outline_of_cam(const Sketch& s, const MarkerPlace& follower, c
   const Vec2 along = rotated(axis->normalized(), frame.axes), from_axis = follower.at - cam.at;
   const double start = s.number("start_angle"), now = curve.at(start).value + s.number("gap");
   std::vector<Vec2> corners;
-  double turned = 0.0; // twice the signed area; tells whether the axis is inside
+  double turned = 0.0; // twice the signed area; its sign shows whether the axis is inside
   for (int i = 0; i < k_corners; ++i) {
     const double turn = 2.0 * std::numbers::pi * i / k_corners;
     const Vec2 place = from_axis + along * (curve.at(start + turn).value - now);

@@ -20,7 +20,7 @@ template <int N> struct Dual {
   Dual() = default;
   Dual(double value) : v(value) {} // NOLINT: a constant is a Dual
   Dual(double value, const Eigen::Array<double, N, 1>& derivative) : v(value), d(derivative) {}
-  /// Returns independent variable number `index`: derivative 1 by itself, 0 by the others.
+  /// Returns independent variable number `index`: derivative 1 with respect to itself, 0 with respect to others.
   static Dual variable(double value, int index) {
     Dual x(value);
     x.d[index] = 1.0;

@@ -27,8 +27,8 @@ constexpr std::array<EventKindText, k_event_kinds> k_table{{
     {EventKind::closes_gap, "closes its gap",
      "a spring with a gap begins to act, a rope becomes taut; of an inextensible one with the impulse of the blow and the energy lost"},
     {EventKind::passes_kink, "passes a kink",
-     "a tabulated spring or damper goes on to the next line of its table; a formula of a force or a state goes on to its next smooth "
-     "piece; one end of a line of sheet edges begins or ceases to bear"},
+     "a tabulated spring or damper passes to the next line of its table; a formula of a force or a state passes to its next smooth "
+     "piece; one end of a line of sheet edges begins or ceases to press"},
     {EventKind::slips, "slips", "a step-lap joint slides; at the start of a run if it slides from there"},
     {EventKind::slips_forward, "slips forward",
      "friction along a line slides to its positive side; at the start of a run if it slides from there"},
@@ -42,8 +42,8 @@ constexpr std::array<EventKindText, k_event_kinds> k_table{{
     {EventKind::storm, "changes too often to be followed: time stepping",
      "events crowd: time stepping goes over the interval that follows"},
     {EventKind::storm_over, "is followed event by event again", "the end of such an interval"},
-    {EventKind::happens, "happens", "an action of the model is done, with what it does"},
-    {EventKind::breaks, "breaks", "a tie's force has reached its strength: it bears nothing for good"},
+    {EventKind::happens, "happens", "an action of the model is executed, with its effects"},
+    {EventKind::breaks, "breaks", "a tie's force has reached its strength: it carries no load from then on"},
     {EventKind::comes_apart, "comes apart", "a step-lap joint has no overlap left: no friction for good"},
 }};
 

@@ -128,17 +128,17 @@ bool is_above(const Stretch& s, double floor, double error, int depth) {
 }
 
 // State of a walk along a gap from left to right that checks whether f falls below the floor exactly once.
-enum class Fall { above, falling, below, in_doubt };
+enum class FallState { above, falling, below, in_doubt };
 
-Fall walk(const Stretch& s, Fall so_far, double floor, double error, int depth) {
-  if (so_far == Fall::below || so_far == Fall::in_doubt) return so_far;
-  if (so_far == Fall::above && is_above(s, floor, error, 0)) return Fall::above;
-  if (range_of(s).most <= floor - error) return Fall::below;
+FallState walk(const Stretch& s, FallState so_far, double floor, double error, int depth) {
+  if (so_far == FallState::below || so_far == FallState::in_doubt) return so_far;
+  if (so_far == FallState::above && is_above(s, floor, error, 0)) return FallState::above;
+  if (range_of(s).most <= floor - error) return FallState::below;
   if (slopes_of(s).most < -k_tail_slope * error) {
-    if (s.c[k_order] >= floor + error) return Fall::above;
-    return s.c[k_order] <= floor - error ? Fall::below : Fall::falling;
+    if (s.c[k_order] >= floor + error) return FallState::above;
+    return s.c[k_order] <= floor - error ? FallState::below : FallState::falling;
   }
-  if (depth == 0) return Fall::in_doubt;
+  if (depth == 0) return FallState::in_doubt;
   const auto [left, right] = halves(s);
   return walk(right, walk(left, so_far, floor, error, depth - 1), floor, error, depth - 1);
 }
@@ -191,7 +191,7 @@ int PartPolynomial::first_uncertain_gap(double floor, std::size_t from, std::siz
 
 bool PartPolynomial::falls_once(double floor, std::size_t gap) const {
   const Stretch whole{bernstein_[gap], node(gap + 1) - node(gap), true, true};
-  return walk(whole, Fall::above, floor, error_, k_depth) != Fall::in_doubt;
+  return walk(whole, FallState::above, floor, error_, k_depth) != FallState::in_doubt;
 }
 
 double PartPolynomial::lowest(std::size_t from, std::size_t to) const {

@@ -5,7 +5,7 @@
 namespace steplap {
 
 Kinematics::Kinematics(const System& system) : system_(system) {
-  motion_.resize(system.bodies.size() + system.links.slot_count()); // upper bound: every body forms a cluster with a slot of its own
+  motion_.resize(system.bodies.size() + system.links.slot_count()); // upper bound: every body forms a separate cluster
 }
 
 void Kinematics::use(Layout& layout, const State& state) {

@@ -25,7 +25,7 @@ constexpr double k_no_weight = 1e-12;
 
 // Returns the capacity of a row in the direction of `wrench`; a freewheel has one for one sign only. `capacity` consists of three blocks:
 // the larger capacity of each row, that of negative wrenches, that of positive ones.
-double side_of(const VecX& capacity, Eigen::Index row, double wrench) {
+double capacity_towards(const VecX& capacity, Eigen::Index row, double wrench) {
   const Eigen::Index count = capacity.size() / 3;
   return capacity[(wrench < 0.0 ? 1 : 2) * count + row];
 }
@@ -40,7 +40,7 @@ LeastUsage::LeastUsage(std::vector<int> dimension, MatX basis, std::vector<int> 
     first += d;
   }
   const Eigen::Index rows = basis_.rows(), k = basis_.cols();
-  capacity_.setZero(3 * rows); // see side_of()
+  capacity_.setZero(3 * rows); // see capacity_towards()
   best_.setZero(rows);
   rates_.setZero(rows);
   trial_.setZero(rows);
@@ -53,7 +53,7 @@ LeastUsage::LeastUsage(std::vector<int> dimension, MatX basis, std::vector<int> 
 double LeastUsage::gauge(const Gauges& gauges, const VecX& wrench, Normal& normal) const {
   const int row = first_[normal.part];
   if (dimension_[normal.part] > 1) return gauges.gauge(normal.part, wrench.data() + row, normal.n);
-  const double inverse = length_[row] / side_of(capacity_, row, wrench[row]);
+  const double inverse = length_[row] / capacity_towards(capacity_, row, wrench[row]);
   normal.n[0] = std::copysign(inverse, wrench[row]);
   return inverse * std::abs(wrench[row]);
 }
@@ -62,7 +62,7 @@ double LeastUsage::gauge(const Gauges& gauges, const VecX& wrench, Normal& norma
 double LeastUsage::support(const Gauges& gauges, std::size_t part) const {
   const int row = first_[part];
   if (dimension_[part] > 1) return gauges.support(static_cast<int>(part), rates_.data() + row);
-  return side_of(capacity_, row, -rates_[row]) / length_[row] * std::abs(rates_[row]);
+  return capacity_towards(capacity_, row, -rates_[row]) / length_[row] * std::abs(rates_[row]);
 }
 
 // Returns the largest gauge of all parts, with its normal.
@@ -137,7 +137,7 @@ void LeastUsage::start_basis(const VecX& wrench) {
     normal = {};
     normal.part = static_cast<int>(after - first_.begin()) - 1;
     const double side = (wrench[row] < 0.0) == (i < k) ? -1.0 : 1.0;
-    normal.n[row - first_[normal.part]] = side * length_[row] / side_of(capacity_, row, side);
+    normal.n[row - first_[normal.part]] = side * length_[row] / capacity_towards(capacity_, row, side);
     put_column(normal, columns_.col(static_cast<Eigen::Index>(i)).data());
   }
 }

@@ -14,9 +14,9 @@ namespace steplap {
 
 namespace {
 
-// Least independent part of a row, relative to its length, at which it counts as independent. k_dependent is for joints. The equations
-// decide about friction (SchurSolver::k_dependent): a friction row that they keep depends on others only if it is parallel to bilateral
-// rows of a rigid joint, and then exactly.
+// Least independent part of a row, relative to its length, with which it counts as independent. k_dependent is for joints. Dependent
+// friction rows are determined by the equations (SchurSolver::k_dependent): a friction row that these keep depends on others only if it is
+// exactly parallel to bilateral rows of a rigid joint.
 constexpr double k_dependent = 1e-6, k_exactly_dependent = 1e-9;
 constexpr double k_out_of_balance = 1e-6; // largest residual of Jᵀ n relative to its terms, for a null vector n
 // Rounding errors of the relative motion of a group's rows: absolute, m/s and m/s², and relative to its terms (k_discord). k_least_gap, m:

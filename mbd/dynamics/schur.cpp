@@ -20,7 +20,7 @@
 
 namespace steplap {
 
-// Rows i and j share a body, which is on these sides of them.
+// Rows i and j share a body, which is on side_i of row i and on side_j of row j.
 struct SchurCoupling {
   int i, j;
   unsigned char side_i, side_j;

@@ -194,7 +194,7 @@ void EventFinder::arm_positive(double theta, const std::vector<double>& event_va
 }
 
 // Creates the initial part, the whole step. If some function is not yet armed, the survey starts at k_arming_theta, where a sample arms
-// the functions that are positive. The short interval before it becomes a part of its own if an armed function is negative at
+// the functions that are positive. The short interval before it becomes a separate part if an armed function is negative at
 // k_arming_theta or not far from zero (test 1 of event_finder.h) between the two ends. Moves low_ to the start of the first part.
 void EventFinder::push_first_interval(Integrator& integrator, Dynamics& dynamics, bool is_any_unarmed) {
   intervals_.clear();

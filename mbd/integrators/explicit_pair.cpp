@@ -106,7 +106,7 @@ bool ExplicitPair::begin_try(double h, double t_limit) {
 }
 
 // Completes a step whose end is accurate, and chooses the length of the next one, if its dense output is accurate enough. `inside` receives
-// the error norm of the dense output if it is asked for.
+// the error norm of the dense output if that is computed.
 bool ExplicitPair::accept_inside(Dynamics& dynamics, double h, double error, bool is_retry, double& inside) {
   const double pivot = dynamics.smallest_pivot();
   is_beside_singular_ = approach_.is_beside(dynamics.least_pivot());

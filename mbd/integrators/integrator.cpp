@@ -16,7 +16,7 @@ namespace {
 // scene's characteristic rate, 60/s (10 Hz) for bodies of 1 m. Above these, errors are relative to displacement and velocity.
 constexpr double k_displacement_floor = 1e-3;
 constexpr double k_rate_floor = 60.0 / k_metre_rate;
-// Weight of the part of an error that projection removes: its directions change within a step, so it is not zero.
+// Weight of that part of an error which projection removes. It is not zero, because the directions of the constraints change within a step.
 constexpr double k_turned_share = 1e-4;
 // Event functions of merged joints far from their limits are computed about twice inside a step, at this distance, but not just before its
 // end, where they are computed in any case.
@@ -31,9 +31,9 @@ constexpr double k_slip_share = 5e-4;
 // The error norm is a mean over the numbers of the state. If there are more numbers than those of eight bodies, slip velocities get a
 // correspondingly larger weight.
 constexpr double k_slip_numbers = 50.0;
-// Within a step a slip slows down to this share at most. The speeds are compared and not the scales of coordinates, which also
-// change with levers: an angle about the contact point itself has an infinite scale, and none that is finite is near to it. Errors that are k_slip_share of its speed where the step begins
-// are then a two hundredth of it wherever the step is looked into, and so is what they turn it by.
+// Least speed of a slip within a step, relative to its start. Speeds are compared instead of scales of coordinates, because these also
+// change with levers: an angle about the contact point itself has an infinite scale. Errors that are k_slip_share of the initial speed are
+// then at most 1/200 of the speed anywhere in the step, and so is the rotation of the slip direction that they cause.
 constexpr double k_least_slip = 0.1;
 // Fraction of the distance to the place where the slip was too slow, for the next try. For a uniformly decelerated slip the speed there is
 // a fifth.

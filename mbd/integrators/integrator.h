@@ -186,16 +186,16 @@ protected:
   double longest_step_ = std::numeric_limits<double>::infinity();
   TurnLimit turn_limit_;
   DividedSteps divided_;
-  double last_rigid_joint_evaluation_ = 0.0;      ///< theta at which joints that are merged were last looked at inside the step
+  double last_rigid_joint_evaluation_ = 0.0;      ///< theta at which merged joints were last evaluated inside the step
   std::vector<double> slip_scale0_, slip_scale1_; ///< per rate, then speeds (Dynamics::slip_scales)
-  std::vector<double> slip_scale_inside_;         ///< where the step is used up to
+  std::vector<double> slip_scale_inside_;         ///< at the end of the used part of the step
   bool has_slip_scale0_ = false, has_slip_scale1_ = false;
-  double slip_care_ = 1.0;  ///< of the errors that velocities of a slip may have: less where nothing checks the output within a step
-  double decay_rate_ = 0.0; ///< of slip laws where the next step begins, 1/s; of methods that choose no steps
+  double slip_care_ = 1.0;  ///< factor on the permitted errors of slip velocities; below 1 if the output within a step is not checked
+  double decay_rate_ = 0.0; ///< of slip laws at the start of the next step, 1/s; 0 for adaptive methods
   long steps_ = 0, rejections_ = 0;
   Residual residual_;
   double length_scale_ = 1.0;
-  double rate_floor_ = 1.0; ///< 1/s: of what is too small for errors relative to it
+  double rate_floor_ = 1.0; ///< 1/s: times a length, the velocity below which error tolerances are absolute
 };
 
 /// Creates the method with this name, one of methods() (mbd/model/method.h). Throws std::invalid_argument for an unknown name.

@@ -208,8 +208,8 @@ void Rodas5p::finish_powers(Dynamics& dynamics) {
   }
 }
 
-// Integrates up to θ by a Lobatto rule of its own. The cubic through the powers of the whole step is less accurate at θ than at its end,
-// and after an event these powers may belong to a law that is no longer valid.
+// Integrates up to θ by a separate Lobatto rule. The cubic through the powers of the whole step is less accurate at θ than at its end, and
+// after an event these powers may belong to a law that is no longer valid.
 void Rodas5p::cut_at(Dynamics& dynamics, double theta) {
   if (is_crossing_ || !(theta > 0.0) || theta == power_span_) return;
   const int e = n_ - 2;

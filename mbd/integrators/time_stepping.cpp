@@ -21,8 +21,8 @@ constexpr double k_settled = 1e-8;
 // Smaller relative changes that no longer decrease are tolerated. The wrenches are then those of a step whose normal forces and velocities
 // differ from the true ones by this relative amount.
 constexpr double k_tolerated = 1e-6;
-// A step shorter than this fraction of the longest is only rounding. Residual velocities of earlier steps, 1e-8 of what a step adds, would
-// otherwise appear as forces a hundred times the real ones.
+// A step shorter than this fraction of the longest is only rounding. Residual velocities of earlier steps, 1e-8 of the change within a
+// step, would otherwise appear as forces a hundred times the real ones.
 constexpr double k_negligible = 1e-6;
 constexpr double k_roundings_of_time = 64.0;
 constexpr double k_whole = 1e-6; // relative to a part: a shorter remainder is added to it
@@ -169,7 +169,7 @@ TimeStepping::Trouble TimeStepping::settle_forces(Dynamics& dynamics, double t1,
     if (change <= k_settled || (change <= k_tolerated && pass > 0 && change > 0.5 * last)) return {};
   }
   if (change <= k_tolerated) return {};
-  return {"friction and the normal forces it hangs on", system_.frictions[parts_[worst].friction].element, change, " of its force"};
+  return {"friction and the normal forces on which it depends", system_.frictions[parts_[worst].friction].element, change, " of its force"};
 }
 
 // Takes over the modes at the end of the step. Returns the first unit whose mode differs from that used in the step, or −1.

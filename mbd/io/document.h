@@ -57,7 +57,7 @@ struct Document {
 [[nodiscard]] std::string model_source_text(const std::string& path);
 
 /// Adds a problem to document.problems for every key and text with a control character, because names appear in CSV files, terminals and
-/// pages. Only `source`, which tells where values come from, may contain line breaks.
+/// pages. Only `source`, which states the origin of values, may contain line breaks.
 void refuse_control_characters(Document& document);
 
 /// Returns the name of an entry of an array of tables, "" if it has none.

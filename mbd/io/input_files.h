@@ -16,8 +16,8 @@ struct InputFile {
   bool operator==(const InputFile&) const = default;
 };
 
-/// Records all documents and tables read on this thread during its lifetime. If one exists within another, the inner one takes what is read
-/// and passes it on with note().
+/// Records all documents and tables read on this thread during its lifetime. If one exists within another, the inner one records
+/// them and passes them on with note().
 class InputFiles {
 public:
   InputFiles();

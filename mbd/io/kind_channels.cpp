@@ -89,7 +89,7 @@ std::vector<std::string> choices_of(const ElementKind& kind) {
   return list;
 }
 
-// Returns TOML lines with optional numbers: none, each one, all of them.
+// Returns TOML lines with optional numbers: without any, with each one alone, with all.
 std::vector<std::string> extras_of(const ElementKind& kind) {
   std::vector<std::string> list{""};
   std::string all;

@@ -35,8 +35,8 @@ const TableKind& case_kind() {
     using T = LoadCase;
     TableKind k;
     k.name = "case";
-    k.doc = "A load that the machine must bear: the model with other values. A run of the model itself ignores it; "
-            "`docs/how-to/sign_load_cases.md` tells how all cases are run.";
+    k.doc = "A load that the machine must withstand: the model with other values. A run of the model itself ignores it; "
+            "How to run all cases: `docs/how-to/sign_load_cases.md`.";
     FieldTable& f = k.fields;
     f.add("set", &T::changes).doc("values of this case, each \"path=value\", such as \"element.drive.signal=braking\"");
     f.add("pull", &T::pull)

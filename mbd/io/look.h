@@ -1,4 +1,4 @@
-// Model table [[look]]: what part of a body is, so that drawings show it as it looks. It does not affect the motion.
+// Model table [[look]]: appearance of a part of a body in drawings. It does not affect the motion.
 //
 //   [[look]]
 //   name = "front wheels"

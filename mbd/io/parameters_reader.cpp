@@ -237,7 +237,7 @@ std::array<double, 3> ParametersReader::dimension_exponents(const ParameterFormu
   return formula.formula.dimension(units).powers;
 }
 
-// Evaluates a formula after those that it needs. Returns false if one of them is wrong.
+// Evaluates a formula after those that it needs. Returns false if any is invalid.
 bool ParametersReader::resolve(std::size_t index, std::vector<std::size_t>& chain) {
   Parameter& parameter = parameters_.entries[index];
   if (is_wrong_[index]) return false;

@@ -304,7 +304,7 @@ void PartWriter::refuse_array(const Node& array) {
   if (entries_.are_of_model_alone(array.key)) {
     const Node& first = array.is_array_of_tables() ? array.children.front() : array;
     return add(first.where(), "[[" + array.key +
-                                  "]] is about a model as a whole and cannot stand in the file of a part: write it into the model, "
+                                  "]] concerns the whole model and is not allowed in the file of a part: write it into the model, "
                                   "with the names that things of the part have there");
   }
   std::vector<std::string> known = entries_.arrays();
@@ -451,7 +451,7 @@ std::string chain_text(const Document& document, const Document::Part& part) {
 }
 
 // Returns the chain of parts that includes the location of a message, as text; "" if there is none.
-std::string way_to(const Document& document, const Diagnostic& problem) {
+std::string inclusion_chain(const Document& document, const Diagnostic& problem) {
   const Document::Part* found = nullptr;
   bool is_named = false;
   for (const Document::Part& part : document.parts) {
@@ -532,7 +532,7 @@ void name_parts(std::vector<Diagnostic>& problems, const Document& document) {
     more.push_back(0);
   }
   for (std::size_t k = 0; k < kept.size(); ++k) {
-    const std::string way = way_to(document, kept[k]);
+    const std::string way = inclusion_chain(document, kept[k]);
     std::string& message = kept[k].message;
     if (!way.empty()) message += " (" + way + (more[k] > 0 ? "; and " + std::to_string(more[k]) + " more like it" : "") + ")";
     else if (more[k] > 0) message += " (and " + std::to_string(more[k]) + " more like it)";

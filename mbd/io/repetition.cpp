@@ -90,7 +90,7 @@ private:
       const std::size_t close = text.find('}', open);
       if (close == std::string::npos) {
         problems_.push_back(
-            {where, "'" + text + "' lacks a '}': what stands in braces in a repeated entry is made of its index, as in \"link {i+1}\""});
+            {where, "'" + text + "' lacks a '}': braces in a repeated entry contain an expression of its index, as in \"link {i+1}\""});
         return text;
       }
       result += text.substr(done, open - done) + number(text.substr(open + 1, close - open - 1), where);

@@ -204,7 +204,7 @@ std::string number_hint(std::string_view line, int column) {
   const auto [end, status] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
   const auto unit = rest.find_first_not_of(" \t", static_cast<std::size_t>(end - rest.data()));
   if (status == std::errc() && unit != std::string_view::npos && is_letter(rest[unit]))
-    return ": a number with a unit stands in quotes, as in \"0.5 kg\"";
+    return ": a number with a unit needs quotes, as in \"0.5 kg\"";
   return "";
 }
 

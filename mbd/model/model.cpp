@@ -64,7 +64,7 @@ const FieldTable& SimulationSettings::fields() {
         .doc("largest constraint residual left after a step, m or rad");
     f.add("max_events", &T::max_events)
         .at_least(1)
-        .doc("events after which a run is given up; kinks of tables are let pass up to ten times as many, and a million at least");
+        .doc("events after which a run is aborted; for kinks of tables ten times as many, at least a million");
     return f;
   }();
   return table;

@@ -102,7 +102,7 @@ struct ElementKind {
   std::shared_ptr<Element> (*copy)(const Element& element) = nullptr; ///< returns a copy; set by holds()
   /// Adds the element to the system. Errors are reported to the builder.
   void (*compile)(const Element& element, SystemBuilder& builder) = nullptr;
-  /// Judges an element after a run (mbd/trust/element_judgement.h); null if the kind has no limits of its own.
+  /// Judges an element after a run (mbd/trust/element_judgement.h); null if the kind has no built-in limits.
   ElementJudgement (*judge)(const Element& element, const Model& model, const RunResult& result) = nullptr;
   /// For kinds that exert a prescribed force: returns true if the element exerts one in addition to its signals. Null for kinds whose forces
   /// depend on the motion alone.
@@ -110,7 +110,8 @@ struct ElementKind {
   /// For kinds whose dry friction can state its origin: returns it. Null for kinds without dry friction, and for tyres and sheets, which have
   /// ranges of their own.
   GivenFriction (*friction)(const Element& element) = nullptr;
-  /// For kinds with a contact: returns what other parts of the program ask about it (mbd/system/contact_description.h). Null otherwise.
+  /// For kinds with a contact: returns the description of the contact for other parts of the program
+  /// (mbd/system/contact_description.h). Null otherwise.
   ContactDescription (*contact)(const Element& element, const Model& model) = nullptr;
   /// True for ropes: where the element's gap opens it goes slack, and where it closes it becomes taut.
   bool goes_slack = false;

@@ -46,9 +46,9 @@ struct Node {
   double t = 0.0, s = 0.0, rate = 0.0, work = 0.0; // for one buffer: time, travel, its rate, absorbed work
 };
 
-class Meeting {
+class WagonImpact {
 public:
-  explicit Meeting(const Shunting& given) : given_(given) {
+  explicit WagonImpact(const Shunting& given) : given_(given) {
     check();
     loading_ = parts_of(given.buffer);
     unloading_ = parts_of(given.unloading.empty() ? given.buffer : given.unloading);
@@ -220,7 +220,7 @@ const SignalKind& shunting_kind() {
                  {},
                  make_held<SignalDefinition, Shunting>,
                  copy_held<SignalDefinition, Shunting>,
-                 [](const SignalDefinition& d) { return Meeting(static_cast<const Shunting&>(d)).pulse(); }};
+                 [](const SignalDefinition& d) { return WagonImpact(static_cast<const Shunting&>(d)).pulse(); }};
     k.fields.add("mass", &Shunting::mass).in("kg").positive().required().doc("of the wagon with all that it carries");
     k.fields.add("other_mass", &Shunting::other_mass).in("kg").positive().required().doc("of the other wagon, or of a group of wagons");
     k.fields.add("speed", &Shunting::speed).in("m/s").required().doc("of the wagon, along x, before they meet");
@@ -229,8 +229,8 @@ const SignalKind& shunting_kind() {
         .in("m", "N")
         .required()
         .doc("[travel, force] of one buffer that is pressed in, straight between them; the first at travel 0");
-    k.fields.add("unloading", &Shunting::unloading).in("m", "N").doc("the same while it comes out again; as pressed in if not given");
-    k.fields.add("damping", &Shunting::damping).in("N s/m").not_negative().doc("of one buffer, beside its curves");
+    k.fields.add("unloading", &Shunting::unloading).in("m", "N").doc("the same during release; default: as for compression");
+    k.fields.add("damping", &Shunting::damping).in("N s/m").not_negative().doc("of one buffer, in addition to its curves");
     k.fields.add("stop_stiffness", &Shunting::stop_stiffness)
         .in("N/m")
         .positive()

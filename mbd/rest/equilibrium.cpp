@@ -48,7 +48,7 @@ struct Slip {
   int times = 0;
   bool is_least = false;  ///< `used` is the least over all distributions of the load
   bool is_new = true;     ///< slides since the last descent
-  bool gives_way = false; ///< nothing but its friction resisted the motion
+  bool gives_way = false; ///< only its friction resisted the motion
 };
 
 // Failure: friction between touching bodies gave way.
@@ -99,8 +99,8 @@ private:
     start_drives(system_, state_);
     const Settling settling = settle_in_time(system_, with_drives_held());
     if (!settling.is_tried)
-      throw ElementFailure(std::string(none.what()) + "; the scene is too large to be let go and damped", none.elements());
-    const std::string tried = std::string(none.what()) + "; let go and strongly damped, it does not come to rest either (" +
+      throw ElementFailure(std::string(none.what()) + "; the scene is too large to be released and damped", none.elements());
+    const std::string tried = std::string(none.what()) + "; released and strongly damped, it does not come to rest either (" +
                               std::to_string(settling.steps) + " time steps)";
     if (!settling.rest) throw ElementFailure(tried, none.elements());
     const int iterations = result_.iterations;
@@ -194,7 +194,7 @@ private:
     const double rest = ratio > 0.0 && ratio < 1.0 ? k_short * ratio / (1.0 - ratio) : 0.0;
     if (++flows_ > k_most_flows || ratio >= 1.0 || rest * most > length_)
       throw NumericalFailure(
-          "no static equilibrium found: an elastic joint slides on and on, since nothing beside it bears what it lets go");
+          "no static equilibrium found: an elastic joint slides without end, since no other element carries the load that it loses");
     last_flow_ = rest > 0.0 ? std::vector<double>() : flow;
     for (std::size_t i = 0; i < flow.size(); ++i) state_.inner[i] += rest * flow[i];
     return true;
@@ -421,7 +421,7 @@ private:
     if (!result_.left.empty()) text = "no stable equilibrium: " + unstable_text(system_, result_.left.front()) + "; downhill from there ";
     if (!slips_.empty()) text += overload_text(slips_.front()) + "; ";
     if (end == DescentEnd::runs_away)
-      text += part_text(system_, part) + " goes on without end: nothing holds it against the " + rounded(descent.driving_force()) + unit +
+      text += part_text(system_, part) + " moves without end: nothing holds it against the " + rounded(descent.driving_force()) + unit +
               " that drive it";
     else
       text += "none was found; forces do not balance on " + part_text(system_, part) + " (" + rounded(descent.residual()) +
@@ -510,11 +510,11 @@ std::vector<std::string> remarks_on(const System& system, const Equilibrium& fou
   std::vector<std::string> remarks;
   if (found.hangs_on_way && found.is_settled)
     remarks.push_back(
-        "friction holds it where it came to when it was let go from the pose given, strongly damped: this rest is one of many, "
-        "need not be the nearest, and which one hangs on the way to it");
+        "friction holds it where it came to rest when released from the given pose with strong damping: this rest is one of many, "
+        "need not be the nearest, and depends on the path");
   else if (found.hangs_on_way)
     remarks.push_back("friction holds it where it slid to: this rest is one of many, need not be the nearest, and "
-                      "which one hangs on the way to it");
+                      "it depends on the path");
   for (const MotionPart& nudge : found.left) remarks.push_back(unstable_text(system, nudge) + ", and so did the search");
   for (std::string& text : indifference_texts(system, found.indifferent)) remarks.push_back(std::move(text));
   if (found.more_indifferent > 0)

@@ -14,9 +14,9 @@ namespace steplap {
 namespace {
 
 // Follows a run from its first leg to its last.
-class Legs {
+class LegFollower {
 public:
-  explicit Legs(const Model& model) : model_(model) {
+  explicit LegFollower(const Model& model) : model_(model) {
     for (std::size_t i = 0; i < model.elements.size(); ++i) {
       const ElementEntry& entry = model.elements[i];
       index_[entry.element->name] = i;
@@ -134,7 +134,7 @@ const Action* find_action(const Model& model, const std::string& name) {
 }
 
 std::vector<ActingSignal> acting_signals(const Model& model, const RunResult& result) {
-  Legs legs(model);
+  LegFollower legs(model);
   std::set<const Action*> happened;
   for (const Event& event : result.events) {
     if (event.kind != EventKind::happens) continue;
@@ -148,6 +148,6 @@ std::vector<ActingSignal> acting_signals(const Model& model, const RunResult& re
   return legs.finished(result.final_state.t, {find_action(model, result.ended_by), ActionVerb::stop});
 }
 
-std::vector<ActingSignal> acting_signals_without_actions(const Model& model, double end) { return Legs(model).finished(end, {}); }
+std::vector<ActingSignal> acting_signals_without_actions(const Model& model, double end) { return LegFollower(model).finished(end, {}); }
 
 } // namespace steplap

@@ -13,7 +13,7 @@ namespace steplap {
 /// The end of an interval in which a signal acts.
 struct SignalCut {
   const Action* action = nullptr;     ///< null: the end of the run
-  ActionVerb verb = ActionVerb::stop; ///< what the action did to the signal
+  ActionVerb verb = ActionVerb::stop; ///< effect of the action on the signal
 };
 
 /// An interval of time in which a signal acts on an element.

@@ -13,7 +13,7 @@
 namespace steplap {
 
 /// First words of CriterionResult::doubt for such a criterion. They distinguish it from doubts about numerical errors.
-inline constexpr std::string_view k_but_for_a_blow = "met but for a rigid blow";
+inline constexpr std::string_view k_but_for_a_blow = "met except for a rigid impact";
 
 /// Sets criteria from "hold" to "open" if a rigid impact makes their value unknown, and updates the verdict. This concerns limits on
 /// forces, couples and accelerations of the elements and bodies that take part in the impact, and of all bodies connected to them by

@@ -46,7 +46,7 @@ struct ElementView {
   std::optional<DrawnSheets> (*sheets)(const Element& element, const Model& model) = nullptr;
 };
 
-/// Answers of all kinds. Functions of a list are asked in its order.
+/// Answers of all kinds to questions of a run. Functions of a list are called in its order.
 struct KindViews {
   /// Closed polygons.
   using Openings = std::vector<std::vector<Vec2>>;
@@ -72,7 +72,7 @@ struct KindViews {
   }
 };
 
-/// The kinds that a model file may use, with what a run asks about them.
+/// The kinds that a model file may use, with their answers to questions of a run.
 struct RunCatalogue : Catalogue {
   std::shared_ptr<const KindViews> views = std::make_shared<const KindViews>(); ///< never null
 };

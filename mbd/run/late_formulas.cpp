@@ -92,13 +92,13 @@ bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
 double golden(int i) { return std::fmod(i * 0.6180339887498949, 1.0); }
 
 // Behaviour of a formula after the end of a run.
-struct Late {
+struct LateEffect {
   double t = 0.0;        ///< s
   bool is_first = false; ///< true if the dependence on time begins there; false if its magnitude exceeds all earlier ones
 };
 
 // Largest magnitudes of an element's channels.
-class Sizes {
+class LargestMagnitudes {
 public:
   void add(const std::vector<double>& values) {
     largest_.resize(values.size(), 0.0);
@@ -115,21 +115,21 @@ private:
   std::vector<double> largest_;
 };
 
-std::optional<Late> late_look(AtOtherTimes& at, double end) {
+std::optional<LateEffect> late_look(AtOtherTimes& at, double end) {
   const std::vector<double> first = at.values(0.0);
   bool depends = false;
-  Sizes within, behind, far_behind;
+  LargestMagnitudes within, behind, far_behind;
   within.add(first);
   for (int i = 1; i <= k_samples; ++i) {
     const std::vector<double> values = at.values(i == k_samples ? end : end * golden(i));
     depends = depends || !are_alike(values, first);
     within.add(values);
   }
-  std::optional<Late> begins, grows;
+  std::optional<LateEffect> begins, grows;
   const auto look = [&](double t) {
     const std::vector<double> values = at.values(t);
-    if (!depends && !begins && !are_alike(values, first)) begins = Late{t, true};
-    if (depends && !grows && within.are_exceeded_by(values)) grows = Late{t, false};
+    if (!depends && !begins && !are_alike(values, first)) begins = LateEffect{t, true};
+    if (depends && !grows && within.are_exceeded_by(values)) grows = LateEffect{t, false};
     (t > k_far * end ? far_behind : behind).add(values);
   };
   for (int i = 1; i <= k_samples; ++i) look(end * (1.0 + (k_near - 1.0) * (i - golden(i)) / k_samples));
@@ -149,7 +149,7 @@ std::vector<Finding> late_formulas(const LoadedModel& loaded, const RunResult& r
     if (!uses_time(entry)) continue;
     try {
       AtOtherTimes at(*loaded.system, result.final_state, entry.element->name);
-      const std::optional<Late> late = late_look(at, end);
+      const std::optional<LateEffect> late = late_look(at, end);
       if (!late) continue;
       const std::string what = late->is_first ? "begins to depend on the time by" : "is larger than in the whole run at";
       findings.push_back({late->is_first ? "load_behind_end" : "load_still_grows", FindingLevel::warning,

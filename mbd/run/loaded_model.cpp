@@ -132,7 +132,7 @@ namespace {
 template <class Work> auto placed(const LoadedModel& loaded, const Work& work) {
   try {
     return work();
-  } catch (const RunStopped&) { // says nothing about the pose
+  } catch (const RunStopped&) { // the search was interrupted, so nothing is known about the pose
     throw;
   } catch (const NumericalFailure& failure) {
     std::string text = failure_of(failure, loaded.model, *loaded.system, 0.0).text;

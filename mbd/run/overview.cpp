@@ -28,9 +28,10 @@ std::string quoted(const std::string& name) { return "'" + shown(name) + "'"; }
 
 // --- the reason of a verdict
 
-class Reason {
+class VerdictReason {
 public:
-  Reason(const Report& report, const Overview& overview, ShownDigits digits) : report_(report), overview_(overview), digits_(digits) {}
+  VerdictReason(const Report& report, const Overview& overview, ShownDigits digits)
+      : report_(report), overview_(overview), digits_(digits) {}
 
   std::string text() const {
     const Judgement& j = report_.judgement;
@@ -135,7 +136,7 @@ private:
 
   std::string open() const {
     const Judgement& j = report_.judgement;
-    if (!j.has_criteria) return "The model asks for nothing: it has no [[acceptance]] by which to judge the run.";
+    if (!j.has_criteria) return "The model has no criteria: it has no [[acceptance]] by which to judge the run.";
     for (const CriterionResult& c : j.criteria)
       if (c.outcome == Verdict::open)
         return quoted(c.name) +
@@ -261,7 +262,7 @@ Trust trust_of(const Report& report) {
     return trust;
   }
   if (report.estimate.status == EstimateStatus::too_dear)
-    return {TrustLevel::limited, "Errors are not estimated, since that takes long, unless it is asked for."};
+    return {TrustLevel::limited, "Errors are estimated on request only, since that takes long."};
   return {TrustLevel::limited, "Errors are not estimated: " + first_sentence(report.estimate.reason) + "."};
 }
 
@@ -287,7 +288,7 @@ Overview overview_of(const Report& report, ShownDigits digits) {
     if (tells_of_motion(entry))
       for (const std::string& name : entry.who)
         if (known.insert(name).second) overview.moved.push_back(name);
-  overview.reason = Reason(report, overview, digits).text();
+  overview.reason = VerdictReason(report, overview, digits).text();
   return overview;
 }
 

@@ -94,8 +94,8 @@ void find_gaps(const Model& model, SignalNetwork& network, std::vector<Finding>&
     const Signal* const signal = network.build(name);
     if (const auto gap = signal ? missing_rows(*signal) : std::nullopt)
       findings.push_back(warning("rows_missing",
-                                 "the rows of record '" + name + "' come evenly but for a gap between t = " + rounded_text(gap->first) +
-                                     " s and " + rounded_text(gap->second) + " s: are rows missing?",
+                                 "the rows of record '" + name + "' are evenly spaced except for a gap between t = " +
+                                     rounded_text(gap->first) + " s and " + rounded_text(gap->second) + " s: are rows missing?",
                                  entry.definition->where));
   }
 }
@@ -190,7 +190,7 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
   if (silent && !has_load && is_at_rest)
     findings.push_back(warning("no_load",
                                "every signal that varies is zero throughout the run: nothing loads the machine but what is constant, and "
-                               "what it bears is not shown",
+                               "its load is not shown",
                                silent->definition->where));
   return findings;
 }
@@ -213,7 +213,7 @@ std::vector<Finding> magnitude_warnings(const LoadedModel& loaded) {
     findings.push_back(warning(code,
                                std::string(what) + " of body '" + least->name + "', " + number_text(value(*least)) + " " + unit +
                                    ", is less than 1e-12 of that of '" + most->name + "', " + number_text(value(*most)) + " " + unit +
-                                   ": their motions are not known beside each other",
+                                   ": their motions are not known relative to each other",
                                least->where));
   };
   for (const ModelEntry& entry : entries_of(model)) note_turns(entry, findings);

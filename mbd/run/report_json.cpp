@@ -88,7 +88,7 @@ Json statistics_json(const RunStatistics& s) {
 // Missing numbers (no such channel, infinite margin, no extremes) are null.
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
-// JSON has no infinity: the value is null, and "…_is" tells which one.
+// JSON has no infinity: the value is null, and "…_is" states which infinity it was.
 void note_infinity(Json& json, const std::string& key, double value) {
   if (std::isinf(value)) json[key + "_is"] = value > 0.0 ? "∞" : "-∞";
 }

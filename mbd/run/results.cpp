@@ -128,7 +128,7 @@ std::string something_else(const fs::path& path) {
     return "";
   }
   if (fs::exists(path / "record.json", ignored))
-    return name + " is the folder of a record, not of a run: what the record holds stands in record.json and events.csv there";
+    return name + " is the folder of a record, not of a run: see record.json and events.csv there";
   for (const fs::directory_entry& entry : fs::directory_iterator(path, ignored))
     if (fs::exists(entry.path() / "summary.json", ignored))
       return name + " holds folders of runs: name one of them, as '" + entry.path().string() + "'";

@@ -109,9 +109,9 @@ std::unique_ptr<System> compiled_for_audit(const Model& model) {
 }
 
 // Runs other methods than the one used for the checked run.
-class Asker {
+class SecondOpinionRuns {
 public:
-  Asker(const Run& asked, const RunOptions& options)
+  SecondOpinionRuns(const Run& asked, const RunOptions& options)
       : loaded_(*asked.loaded), run_(asked.result), run_options_(options), as_run_(options_of(loaded_.model)),
         system_(compiled_for_audit(loaded_.model)), used_(method_used(*system_, as_run_)) {}
 
@@ -182,7 +182,7 @@ private:
 } // namespace
 
 SecondOpinion second_opinion(const Run& asked, const RunOptions& options) {
-  Asker asker(asked, options);
+  SecondOpinionRuns asker(asked, options);
   SecondOpinion opinion = asker.time_stepping();
   if (opinion.none_because.empty() || method(options_of(asked.loaded->model).integrator).is_time_stepping) return opinion;
   SecondOpinion drawn = asker.drawn_steps();

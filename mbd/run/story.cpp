@@ -75,9 +75,9 @@ struct SubjectDirection {
   bool is_opening;
 };
 
-class Gatherer {
+class OccurrenceCollector {
 public:
-  Gatherer(const Report& report, const RangeIndex& ranges) : report_(report), ranges_(ranges) {
+  OccurrenceCollector(const Report& report, const RangeIndex& ranges) : report_(report), ranges_(ranges) {
     const Model& model = report.run.loaded->model;
     for (const ElementEntry& entry : model.elements) entry_of_.emplace(entry.element->name, &entry);
   }
@@ -350,9 +350,9 @@ private:
 
 // --- from occurrences to text
 
-class Teller {
+class StoryWriter {
 public:
-  Teller(const Report& report, ShownDigits digits) : digits_(digits), end_(report.run.result.final_state.t) {
+  StoryWriter(const Report& report, ShownDigits digits) : digits_(digits), end_(report.run.result.final_state.t) {
     for (const ChannelRange& range : report.ranges()) { // scale for the detection of rounding
       if (range.channel->unit == "m") scale_m_ = std::max(scale_m_, std::abs(range.largest().value));
       if (range.channel->unit == "N") scale_n_ = std::max(scale_n_, std::abs(range.largest().value));
@@ -494,8 +494,8 @@ bool tells_of_motion(const StoryEntry& entry) {
 }
 
 std::vector<StoryEntry> story_of(const Report& report, const RangeIndex& ranges, ShownDigits digits) {
-  const std::vector<Happening> happenings = Gatherer(report, ranges).gather();
-  const Teller teller(report, digits);
+  const std::vector<Happening> happenings = OccurrenceCollector(report, ranges).gather();
+  const StoryWriter teller(report, digits);
   std::map<StorySubject, std::vector<const Happening*>> groups;
   if (happenings.size() > k_few)
     for (const Happening& h : happenings) groups[h.what].push_back(&h);

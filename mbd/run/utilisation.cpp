@@ -16,25 +16,25 @@ std::string last_part(const std::string& channel) { return channel.substr(channe
 std::string element_part(const std::string& channel) { return channel.substr(0, channel.rfind('.')); }
 
 // For kinds with a criterion of their own: the channel that it limits, and the text for it.
-struct Aspect {
+struct LimitedQuantity {
   const char* channel;
   const char* name;
   bool is_lower;  // the limit is a lower bound
   const char* of; // quantity to which the share refers
 };
 
-const Aspect* aspect_of(const std::string& channel) {
-  static constexpr Aspect k_aspects[] = {{"margin", "friction", true, "what friction holds"},
-                                         {"corner_margin", "a corner by itself", true, "what friction holds"},
-                                         {"part_margin", "a packet by itself", true, "what friction holds"},
-                                         {"least_pressure", "pressure lost", true, "the pressure at the start"},
-                                         {"overlap_left", "overlap lost", true, "the overlap"},
-                                         {"clearance_left", "clearance used", true, "the clearance"},
-                                         {"slid_share", "displacement", false, "the slide that is allowed"},
-                                         {"edge_share", "sheet edges", false, "the line load that is allowed"},
-                                         {"strength_share", "strength", false, "its strength"}};
+const LimitedQuantity* aspect_of(const std::string& channel) {
+  static constexpr LimitedQuantity k_aspects[] = {{"margin", "friction", true, "what friction holds"},
+                                                  {"corner_margin", "a single corner", true, "what friction holds"},
+                                                  {"part_margin", "a single packet", true, "what friction holds"},
+                                                  {"least_pressure", "pressure lost", true, "the pressure at the start"},
+                                                  {"overlap_left", "overlap lost", true, "the overlap"},
+                                                  {"clearance_left", "clearance used", true, "the clearance"},
+                                                  {"slid_share", "displacement", false, "the slide that is allowed"},
+                                                  {"edge_share", "sheet edges", false, "the line load that is allowed"},
+                                                  {"strength_share", "strength", false, "its strength"}};
   const std::string part = last_part(channel);
-  for (const Aspect& aspect : k_aspects)
+  for (const LimitedQuantity& aspect : k_aspects)
     if (part == aspect.channel) return &aspect;
   return nullptr;
 }
@@ -124,7 +124,7 @@ private:
 
   // A criterion on a margin is met at 1 or at a larger margin that the model requires.
   void add_of_element(const CriterionResult& c) {
-    const Aspect* aspect = aspect_of(c.channel);
+    const LimitedQuantity* aspect = aspect_of(c.channel);
     if (!aspect) return;
     const ChannelRange* range = ranges_.find(c.channel);
     const auto share = aspect->is_lower ? share_of_lower(*c.value, *c.limit, range) : share_of_upper(*c.value, *c.limit, range);

@@ -27,7 +27,7 @@ struct ActionTriggers {
   void arm(std::size_t action);
   /// Disarms an action.
   void disarm(std::size_t action);
-  /// To be called when an action is executed. It triggers again only after its condition has become true anew, and, with `is_once`, after
+  /// To be called when an action is executed. It triggers again only after its condition has become true again, and, with `is_once`, after
   /// it was armed again.
   void spend(std::size_t action, bool is_once);
   /// Returns true if any action is due at `state`, and sets is_due. `events` are the new events; `is_stepped` as in ActionGroup::holds.

@@ -3,7 +3,7 @@
 //
 // Positions and velocities are kept, and so are modes, friction phases, anchors and inner states of elements active in both. A deactivated
 // element exerts no force, and its stored energy is dissipated. An activated element starts at the present positions: a weld, a slide and a
-// rod keep the pose found; a pin and a rope must fit. Velocities that do not fit jump (mbd/events/blow.h). A drive that is set anew starts
+// rod keep the pose found; a pin and a rope must fit. Velocities that do not fit jump (mbd/events/blow.h). A drive with a new signal starts
 // at the present position, and, if it is read as an acceleration, at the present velocity. Energy that appears with an activated or
 // stiffened spring is counted as work.
 #pragma once

@@ -24,10 +24,11 @@ void check_sticking(const System& system, const State& state, const LoadSharing*
     if (const OneWayLock* const lock = one_way_lock(unit)) {
       const double beyond = -std::min(one, other); // the bounded side
       if (beyond <= k_stuck_beyond * lock->drag() + slight_force(system, *lock->rows(state.friction[f]))) continue;
-      throw ElementFailure("at t = " + number_text(t) + " s the one-way clutch '" + name + "' holds back with " +
-                               rounded_text(beyond + lock->drag()) + " where it drags with " + rounded_text(lock->drag()) +
-                               ": the run contradicts itself, for it has to let go. Try a smaller tolerance or step, or another integrator",
-                           {name});
+      throw ElementFailure(
+          "at t = " + number_text(t) + " s the one-way clutch '" + name + "' holds back with " + rounded_text(beyond + lock->drag()) +
+              " where it drags with " + rounded_text(lock->drag()) +
+              ": this is a contradiction, because it would have to slip. Try a smaller tolerance or step, or another integrator",
+          {name});
     }
     if (std::min(one, other) >= -k_stuck_beyond * (std::abs(one) + std::abs(other))) continue;
     throw ElementFailure("at t = " + number_text(t) + " s '" + name + "' sticks with " + rounded_text(0.5 * std::abs(other - one)) +

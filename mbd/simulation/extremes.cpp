@@ -28,7 +28,8 @@ constexpr double k_samples_per_period = 8.0; // samples per period of the fastes
 constexpr double k_within_reach = 0.25;      // relative to the range of a channel: values farther from both extremes are ignored if the
                                              // curvature is small enough
 constexpr double k_bit_of_slack = 0.1;       // accuracy of a polynomial's maximum, relative to the tolerance
-// One estimate in a hundred is exceeded by up to this factor. A maximum whose error estimate is not below the tolerance by it is evaluated.
+// One estimate in a hundred is exceeded by up to this factor. A maximum whose error estimate times this factor is not below the tolerance
+// is evaluated.
 constexpr double k_safety = 3.0;
 constexpr double k_same_crossing = 1e-10; // relative to the stretch
 // Up to this number of channels each is searched separately without testing for rounding noise.
@@ -318,7 +319,7 @@ bool ExtremeFinder::suspect(double h) {
     if (h_last > 0.0 && a == b && a == before[c] && curvature_[c] == 0.0 && rate_of_[c] < 0) continue; // at rest
     if (is_mode(*ranges_[c].channel) || formulas_->is_formula(c) || is_ruled_out(c) || std::isinf(a) || std::isinf(b)) continue;
     const double slope = b - a, last = h_last > 0.0 ? (a - before[c]) * share : k_unknown;
-    if (!std::isnan(slope) && !std::isnan(last)) { // rates over this stretch and over the same time before
+    if (!std::isnan(slope) && !std::isnan(last)) { // rates of change over this stretch and over the same duration before it
       const double bend_now = std::abs(slope - last) / halves;
       curvature_[c] = std::max(bend_now / square, k_remembered * curvature_[c]);
       const double bend = k_surprise * curvature_[c] * h * h;
@@ -399,9 +400,9 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
   return true;
 }
 
-// Evaluates the maxima that settle() left unchecked. Channels whose polynomial is wrong there are searched further. Many channels have as
-// many maxima, each with an evaluation of its own: then the first level is followed by the second, whose nodes they share, and later ones
-// are taken as they are.
+// Evaluates the maxima that settle() left unchecked. Channels whose polynomial is wrong there are searched further. Each check is one
+// evaluation. If there are many, all these channels get the next level of nodes instead, which they share, and the maxima found there are
+// accepted without a check.
 void ExtremeFinder::check_tops(int level, Integrator& integrator, Dynamics& dynamics) {
   const bool are_many = unchecked_.size() > k_few;
   for (const Top& top : unchecked_) {

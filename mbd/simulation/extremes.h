@@ -63,7 +63,7 @@ public:
   /// `max_dimension`: upper limit of the dimension of the packed state. Keeps a reference to the system.
   ExtremeFinder(const System& system, int max_dimension);
 
-  /// Starts anew at a state: the start of the run, or after an event. `snapshot` belongs to this state.
+  /// Restarts at a state: the start of the run, or after an event. `snapshot` belongs to this state.
   void begin(double t, const Snapshot& snapshot);
   /// As above, for a method that locates events. Precondition: the last evaluation of `dynamics` was at this state.
   void begin(double t, const Snapshot& snapshot, const Integrator& integrator, Dynamics& dynamics);

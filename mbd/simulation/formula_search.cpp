@@ -200,7 +200,7 @@ double FormulaSearch::place_of_peak(MonitoredFormula& sought, Integrator& integr
   return 1.0;
 }
 
-// Is a comparison that counts with these bits not for certain what its bit says?
+// Returns true if a comparison that matters for these bits may have another outcome than its bit.
 template <class Value> bool FormulaSearch::may_change(const MonitoredFormula& sought, SwitchBits bits, const Value& value_at) {
   const SwitchBits counting = sought.program->counting(bits);
   for (std::size_t s = 0; s < sought.comparisons.size(); ++s) {
@@ -241,7 +241,7 @@ double FormulaSearch::first_change(MonitoredFormula& sought, Integrator& integra
   return first;
 }
 
-// Operands within what is seen at three places, and as much again on either side: as of curves that are not smooth.
+// Test for curves that are not smooth: each operand may leave the range of its three samples by the width of that range on either side.
 bool FormulaSearch::may_be_outside_by_range(const MonitoredFormula& sought, double t0, double t1) {
   for (std::size_t i = 0; i < sought.curves.count(); ++i) {
     const auto [low, high] = std::minmax({sought.operands[0][i], sought.operands[1][i], sought.operands[2][i]});

@@ -14,7 +14,7 @@ namespace steplap {
 
 namespace {
 
-// Tells whether velocities changed by more than joints that close at rest leave of them.
+// Returns true if velocities changed by more than the closing of joints at rest leaves as rounding.
 bool jumps(const std::vector<double>& before, const std::vector<double>& after) {
   constexpr double k_share = 1e-6, k_least = 1e-9; // of the fastest velocity; m/s or rad/s
   double fastest = 0.0, most = 0.0;

@@ -22,7 +22,7 @@ public:
 
   /// Continues with the integrals of `before`, whose system has the same integrands.
   void go_on_from(const PowerLedger& before) { total_ = before.total_; }
-  /// Starts anew at a state: the start of the run, or after an event.
+  /// Restarts at a state: the start of the run, or after an event.
   void begin(double t, const Snapshot& snapshot);
   /// Adds the last step up to time t.
   void add_step(double t, Integrator& integrator, Dynamics& dynamics);

@@ -165,8 +165,8 @@ void RunLeg::check_finite() {
 
 void RunLeg::fail_infinite(double t) const {
   std::ostringstream message;
-  message << "the motion became infinite at t = " << t << " s: '" << integrator_->name() << "' does not bear steps of " << integrator_->h()
-          << " s here";
+  message << "the motion became infinite at t = " << t << " s: '" << integrator_->name() << "' is unstable with steps of "
+          << integrator_->h() << " s here";
   if (!integrator_->is_adaptive()) message << "; try a smaller step, or rodas5p";
   if (!record_->events.empty()) message << ". The last event was of '" << record_->events.back().element << "'";
   if (record_->events.empty()) throw NumericalFailure(message.str());
@@ -286,7 +286,7 @@ bool RunLeg::are_joints(const std::vector<int>& slots) const {
   });
 }
 
-// Tables of many points make many: they have a limit of their own, far above that of other events.
+// Tables of many points cause many kinks, so kinks have a separate limit, far above that of other events.
 static void guard_against_kinks(long kinks, long max_events, double t, const std::string& element) {
   const long most = std::max(k_least_kinks, k_kinks_per_event * std::min(max_events, std::numeric_limits<long>::max() / k_kinks_per_event));
   if (kinks <= most) return;
@@ -332,7 +332,7 @@ void RunLeg::keep_ties(double t) {
 void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* event_value_before) {
   is_between_events_ = false;
   std::copy(y, y + dynamics_.dimension(), y_.begin());
-  // Projection begins with factors of this state: after those of a sample it would leave something else within its tolerance.
+  // Projection starts with the factors of this state: with those of a sample its result would differ within its tolerance.
   (void)dynamics_.residual(t, y_.data());
   dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
   energy_.check_step(dynamics_, t, y_.data());

@@ -29,12 +29,12 @@ struct SimulationOptions {
   double output_step = 0.0;                         ///< s; 0: no samples
   std::vector<std::string> channels;                ///< patterns of the channels to be sampled; empty: all
   bool has_extremes = false;                        ///< compute the extremes of all channels, sampled or not
-  bool has_growth = false;                          ///< keep how these have grown (RunResult::growth); needs has_extremes
+  bool has_growth = false;                          ///< record the extremes so far at several times (RunResult::growth); needs has_extremes
   bool notes_motion = false;                        ///< keep RunResult::legs. Changes no other result
   std::optional<SimultaneousSlip> other_slip;       ///< at this tie of an earlier, equal run `sticks` slips first instead of `slips`
-  double storm_step = 1e-2;                         ///< of time stepping through a storm of events, in shares of its window
-  long storm_parts = 10000;                         ///< into which these are halved at most: events are the cheaper then
-  long max_events = 100000;                         ///< beyond which the run is given up
+  double storm_step = 1e-2;                         ///< step of time stepping through a storm of events, as a share of its window
+  long storm_parts = 10000;                         ///< extra parts by halving such steps; beyond them, locating the events is cheaper
+  long max_events = 100000;                         ///< a run with more events is aborted
   std::function<void(double t)> progress;           ///< called from time to time, if given
 };
 
@@ -73,11 +73,11 @@ struct RunResult {
   std::vector<ChannelRange> ranges;       ///< for every channel of the system, if requested
   /// How far contacts pressed beyond the ends of their parts, leg by leg; with the ranges.
   std::vector<FaceTravel> face_travels;
-  std::vector<ExtremesSoFar> growth;  ///< of these, at some tens of times spread over the run, if that was asked for
+  std::vector<ExtremesSoFar> growth;  ///< extremes so far, at some tens of times spread over the run, if requested
   std::vector<Event> events;          ///< ascending in time
   std::vector<RigidBlow> blows;       ///< ascending in time; an action that closed joints stands for these
   std::vector<SimultaneousSlip> ties; ///< ascending in time, at most RunRecord::k_most_ties
-  RunStatistics statistics;           ///< what it took, and how exact it was
+  RunStatistics statistics;           ///< effort and accuracy
   State final_state;                  ///< at the end, or where the run stopped
   std::string stop_reason;            ///< reason why an element ended the run early; empty if it reached its end
   std::string ended_by;               ///< name of the action that ended the run; empty: none
@@ -93,7 +93,7 @@ struct RunRecord {
   std::vector<SimultaneousSlip> ties;              ///< the first k_most_ties
   static constexpr std::size_t k_most_ties = 1000; ///< ties kept
   std::vector<ExtremesSoFar> growth;               ///< ascending in time; extremes of a leg count from its beginning
-  double growth_step = 0.0;                        ///< s, least between two of them; 0: none was kept yet
+  double growth_step = 0.0;                        ///< s, smallest interval between two entries; 0: no entry yet
   long samples = 0;                                ///< taken so far
 };
 

@@ -64,7 +64,7 @@ public:
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
 
   /// Returns whether the comparison or time condition is true at `state`. `is_stepped`: the run uses time stepping, so the modes of units
-  /// are not up to date and the formula is evaluated anew.
+  /// are not up to date and the formula is evaluated again.
   [[nodiscard]] bool holds(std::size_t action, const State& state, const std::vector<Motion<double>>& motion, bool is_stepped) const;
 
 private:

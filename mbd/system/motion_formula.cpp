@@ -48,7 +48,7 @@ public:
     if (wanted && !is_zero && whole.powers != wanted->powers) {
       const std::string is = unit_text(whole.powers);
       throw std::invalid_argument(subject_ + " has to be in '" + (asked_.unit.empty() ? "1" : asked_.unit) + "', and the formula has " +
-                                  (is.empty() ? "no unit" : "the unit '" + is + "'") + ": numbers with units stand in quotes, '12 N'");
+                                  (is.empty() ? "no unit" : "the unit '" + is + "'") + ": numbers with units need quotes, '12 N'");
     }
     FormulaNode last;
     last.op = FormulaOp::finite;
@@ -180,7 +180,7 @@ private:
     const MeasuredValue* const measured = measured_by(channel);
     if (!measured)
       throw std::invalid_argument(subject_ + ": '" + channel.name +
-                                  "' is no place, angle or velocity that follows from the motion alone, so no force can hang on it; " +
+                                  "' is no place, angle or velocity that follows from the motion alone, so no force can depend on it; " +
                                   "name the places or velocities that it comes from");
     MotionOperand operand;
     operand.kind = MotionOperand::Kind::measure;

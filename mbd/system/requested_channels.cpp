@@ -360,7 +360,7 @@ const Channel& RequestedChannels::operand(const DefinedChannel& d, const std::st
   const Channel* const found = bare == name ? nullptr : find(bare);
   if (!found)
     throw ModelError(d.place("expression"), subject + ": there is no channel '" + name + "'" + did_you_mean(name, all_names()) +
-                                                "; names with other characters than letters, digits, _ and points stand in braces");
+                                                "; names with other characters than letters, digits, _ and points need braces");
   const std::string unit = name.substr(bare.size() + 2, name.size() - bare.size() - 3);
   if (found->unit != unit)
     throw ModelError(d.place("expression"), subject + ": '" + found->name + "' is in '" + found->unit + "', not in '" + unit + "'");

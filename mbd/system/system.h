@@ -203,7 +203,7 @@ public:
   std::vector<char> is_body_used;                              ///< per body: a force or friction element acts on it
   bool has_work = false;                                       ///< a load, motor or drive may do work
   int contact_count = 0;                                       ///< number of normal forces (EvaluationData::contact_force)
-  std::vector<EndlessFace> endless_faces;                      ///< faces of contacts that go on where their part has ended
+  std::vector<EndlessFace> endless_faces;                      ///< contact faces that extend beyond the end of their part
   int event_count = 0;                                         ///< number of event functions
   int friction_row_count = 0;                                  ///< number of rows of all friction elements
 

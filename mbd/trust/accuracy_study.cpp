@@ -84,7 +84,7 @@ private:
     throw NumericalFailure("no reference: " + options_.first_reference.text() + " and " + options_.second_reference.text() + " differ by " +
                            rounded_text(worst.value, 3) + " of range in '" + worst.where + "' at t = " + rounded_text(worst.t, 12) +
                            " s, more than " + number_text(k_agreement) +
-                           ": the motion magnifies rounding beyond what any run can tell. A shorter run or other "
+                           ": the motion magnifies rounding beyond the resolution of any run. A shorter run or other "
                            "references may do.");
   }
 

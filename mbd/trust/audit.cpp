@@ -184,10 +184,10 @@ void add_shared_channels(System& system) {
       const std::string& name = system.element_names[system.frictions[f].element];
       names += (names.empty() ? "shared: " : " + ") + name;
       system.channels.push_back(
-          {k_prefix + name + k_shares, "", "1: what it bears is a share", [group](const Snapshot& s) { return shares_of(s, group); }});
+          {k_prefix + name + k_shares, "", "1: its force is a share", [group](const Snapshot& s) { return shares_of(s, group); }});
     }
-    system.channels.push_back({names, "N", "what frictions along one line bear together",
-                               [self, group](const Snapshot& s) { return borne_together(s, *self, group); }});
+    system.channels.push_back(
+        {names, "N", "total of frictions along one line", [self, group](const Snapshot& s) { return borne_together(s, *self, group); }});
   }
 }
 

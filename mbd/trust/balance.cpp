@@ -51,7 +51,7 @@ constexpr int k_steady_instants = 2;         // instants in a steady leg, in whi
 constexpr std::size_t k_most_stretches = 32; // most stretches between breakpoints of loads that are examined separately
 
 // Growth over a leg according to its stiffness.
-struct Course {
+struct LegGrowth {
   double exponent = 0.0; ///< ∫ rate dt
   double rate = 0.0;     ///< largest rate, 1/s
   VecX shape;            ///< its displacement, W δ
@@ -99,8 +99,8 @@ std::vector<Instant> instants_in_motion(const LegMotion& leg, int count) {
 
 using GrowthAt = std::function<FrozenGrowth(const State&)>;
 
-Course course_of(const GrowthAt& growth_at, const std::vector<Instant>& instants) {
-  Course course;
+LegGrowth growth_over_leg(const GrowthAt& growth_at, const std::vector<Instant>& instants) {
+  LegGrowth course;
   for (const Instant& instant : instants) {
     const FrozenGrowth growth = growth_at(instant.state);
     course.exponent += growth.rate * instant.duration;
@@ -214,7 +214,7 @@ private:
     const double t = simulation_.state().t;
     if (progress_) progress_(t); // throws if the run is to be aborted
     if (evaluations() > most_evaluations_)
-      throw EvaluationBudgetExceeded("given up after " + number_text(most_evaluations_) + " evaluations, at t = " + number_text(t) +
+      throw EvaluationBudgetExceeded("aborted after " + number_text(most_evaluations_) + " evaluations, at t = " + number_text(t) +
                                      " s of a run from nudged poses");
     return goes_on;
   }
@@ -279,7 +279,7 @@ public:
   }
 
   // Returns true if half the difference of the two runs from the nudge and its mirror image grows along `shape` as `course` predicts.
-  bool confirms(const Course& course) {
+  bool confirms(const LegGrowth& course) {
     if (course.swing > 0.0) limit_steps(k_swing_step / course.swing);
     NudgedRun plus = nudged(1.0), minus = nudged(-1.0);
     if (!plus.reach_leg() || !minus.reach_leg()) return false;
@@ -291,7 +291,7 @@ public:
     while (plus.advance()) {
       while (minus.now().t < plus.now().t && minus.advance()) {}
       if (plus.evaluations() + minus.evaluations() > most_evaluations_)
-        throw EvaluationBudgetExceeded("given up after " + number_text(most_evaluations_) +
+        throw EvaluationBudgetExceeded("aborted after " + number_text(most_evaluations_) +
                                        " evaluations, at t = " + number_text(plus.now().t) + " s of two runs from nudged poses");
       grown = std::max(grown, std::abs(course.shape.dot(difference(plus, minus))) / from);
       if (grown > k_grown_nudge) return true;
@@ -343,7 +343,7 @@ private:
     while (plus.advance()) {
       while (minus.now().t < plus.now().t && minus.advance()) {}
       if (plus.evaluations() + minus.evaluations() > most_evaluations_)
-        throw EvaluationBudgetExceeded("given up after " + number_text(most_evaluations_) +
+        throw EvaluationBudgetExceeded("aborted after " + number_text(most_evaluations_) +
                                        " evaluations, at t = " + number_text(plus.now().t) + " s of two runs from nudged poses");
       const double from = plus.step_begin(), step = plus.now().t - from;
       for (int part = 1; part <= k_parts_of_step; ++part) {
@@ -480,7 +480,7 @@ bool is_without_events(const System& system, const RunResult& run, const LegMoti
 }
 
 // Tests legs of one run for unstable equilibria.
-struct AskedLeg {
+struct ExaminedLeg {
   const System& system; ///< system of the run
   const State& initial; ///< initial state of the run
   const SimulationOptions& options;
@@ -508,9 +508,9 @@ struct AskedLeg {
 };
 
 // Tests whether the growth by `growth_at` at the instants `looks` exceeds `least_exponent` over the leg, and confirms it by nudged runs.
-std::optional<Balance> AskedLeg::by_growth(const FrozenLeg& frozen, const GrowthAt& growth_at, const LegMotion& leg,
-                                           const std::vector<Instant>& looks, double least_exponent) const {
-  const Course course = course_of(growth_at, looks);
+std::optional<Balance> ExaminedLeg::by_growth(const FrozenLeg& frozen, const GrowthAt& growth_at, const LegMotion& leg,
+                                              const std::vector<Instant>& looks, double least_exponent) const {
+  const LegGrowth course = growth_over_leg(growth_at, looks);
   if (!(course.exponent > least_exponent)) return {};
   if (!is_at_rest(leg) && course.growing < std::min(k_least_instants, static_cast<int>(looks.size()))) return {};
   NudgedLeg nudged(system, initial, options, leg, most_evaluations);
@@ -519,7 +519,7 @@ std::optional<Balance> AskedLeg::by_growth(const FrozenLeg& frozen, const Growth
   return balance_by(system, leg, course.shape, course.exponent / (leg.end - leg.begin.t));
 }
 
-std::optional<Balance> AskedLeg::by_stiffness(FrozenLeg& frozen, const LegMotion& leg, double least_exponent) const {
+std::optional<Balance> ExaminedLeg::by_stiffness(FrozenLeg& frozen, const LegMotion& leg, double least_exponent) const {
   const double least = k_least_share * least_exponent / (leg.end - leg.begin.t);
   const std::vector<Instant> looks =
       is_at_rest(leg) ? instants_at_rest(own_system(leg), leg, instants()) : instants_in_motion(leg, instants());
@@ -532,7 +532,7 @@ std::optional<Balance> AskedLeg::by_stiffness(FrozenLeg& frozen, const LegMotion
   return by_growth(frozen, growth_at, leg, instants_in_motion(leg, std::min(instants(), k_steady_instants)), least_exponent);
 }
 
-std::optional<Balance> AskedLeg::by_nudge(FrozenLeg* frozen, const LegMotion& leg) const {
+std::optional<Balance> ExaminedLeg::by_nudge(FrozenLeg* frozen, const LegMotion& leg) const {
   NudgedLeg nudged(system, initial, options, leg, most_evaluations);
   nudged.choose_nudge(frozen, {});
   const auto gone = nudged.goes_off_otherwise();
@@ -548,8 +548,8 @@ bool grows_at(FrozenLeg& frozen, const State& state, double least) {
 }
 
 // Tests equilibria that rounding ended during the leg. For each direction that moved late, the part of the leg before its first motion is
-// tested as a leg of its own in which that direction did not move.
-std::optional<Balance> AskedLeg::until_it_fell(const LegMotion& leg) const {
+// tested as a separate leg in which that direction did not move.
+std::optional<Balance> ExaminedLeg::until_it_fell(const LegMotion& leg) const {
   const double duration = leg.end - leg.begin.t;
   double last = -std::numeric_limits<double>::infinity();
   for (const double t : leg.moved.since()) {
@@ -567,7 +567,7 @@ std::optional<Balance> AskedLeg::until_it_fell(const LegMotion& leg) const {
   return {};
 }
 
-std::optional<Balance> AskedLeg::of(const LegMotion& leg) const {
+std::optional<Balance> ExaminedLeg::of(const LegMotion& leg) const {
   const double duration = leg.end - leg.begin.t;
   if (!(duration > 0.0) || leg.moved.weights().empty()) return {};
   if (!has_dense_algebra()) {
@@ -590,7 +590,7 @@ std::optional<Balance> AskedLeg::of(const LegMotion& leg) const {
 std::optional<Balance> balance_of(const System& system, const State& initial, const SimulationOptions& options, const RunResult& run,
                                   double most_evaluations) {
   if (!run.legs) return {};
-  const AskedLeg asked{system, initial, options, run, most_evaluations};
+  const ExaminedLeg asked{system, initial, options, run, most_evaluations};
   for (const LegMotion& leg : *run.legs)
     if (auto found = asked.of(leg)) return found;
   return {};

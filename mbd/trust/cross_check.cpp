@@ -66,9 +66,9 @@ bool is_finite(const RunResult& run) {
   return std::isfinite(run.statistics.dissipated) && std::isfinite(run.statistics.work);
 }
 
-class Checker {
+class CrossChecker {
 public:
-  Checker(const System& system, const State& initial, const SimulationOptions& base, const CrossCheckOptions& options)
+  CrossChecker(const System& system, const State& initial, const SimulationOptions& base, const CrossCheckOptions& options)
       : system_(system), initial_(initial), base_(base), options_(options) {
     for (const FrictionUnit& unit : system.frictions) friction_names_.insert(system.element_names[unit.element]);
     is_counted_ = [this](const Event& event) {
@@ -435,7 +435,7 @@ CrossCheck cross_check(const System& system, const State& initial, const Simulat
   CrossCheckOptions used = options;
   if (used.methods.empty()) used.methods = usual_methods(base.end, base.settings.tolerance, base.settings.step);
   SimulationOptions sampling = base;
-  CrossCheck check = Checker(system, initial, sampling, used).made();
+  CrossCheck check = CrossChecker(system, initial, sampling, used).made();
   double last = thread_cpu_seconds() - start;
   for (int look = 1; look <= options.refinements && is_worth_refining(check); ++look) {
     const double begin = thread_cpu_seconds();
@@ -445,7 +445,7 @@ CrossCheck cross_check(const System& system, const State& initial, const Simulat
     for (CrossMethod& method : used.methods)
       for (MethodSetting& level : method.levels)
         if (level.is_step) level.value *= k_closer;
-    CrossCheck closer = Checker(system, initial, sampling, used).made();
+    CrossCheck closer = CrossChecker(system, initial, sampling, used).made();
     const auto stops = [](const CrossCheck& c) {
       return std::count_if(c.runs.begin(), c.runs.end(), [](const CrossRun& r) { return !r.failure.empty(); });
     };

@@ -14,7 +14,7 @@
 // Two runs disagree in a channel if they differ by more than k_margin (sum of both estimates + floor for rounding). Near events the
 // distance between the two graphs is used, within the uncertainty of the event's time. For reactions, which jump, it is used everywhere,
 // within one sample. Only samples are compared, so extremes over samples are used too. A friction event that is certain in one run and
-// missing in the other is a disagreement, except a slip that passes through rest and goes on in another direction: time stepping cannot
+// missing in the other is a disagreement, except a slip that passes through rest and continues in another direction: time stepping cannot
 // show it. Two methods with the same search for events do not confirm each other: `moreau` is compared with all. An adaptive method whose
 // own error is larger than that of time stepping is reported for that alone.
 //

@@ -19,7 +19,7 @@ struct ComparedChannel {
   double scale = 1.0;          ///< range over the run, or a part of the largest range of its kind; unit of the channel
   double wide_scale = 1.0;     ///< larger scale: an error of this size means that the motion is lost
   int body = 0, mechanism = 0; ///< body of the channel, and its mechanism: bodies that act on each other have the same number
-  int shares = -1;             ///< column that tells where a friction force is undetermined (audit.h, "shares"); −1: none
+  int shares = -1;             ///< column that is 1 where a friction force is not unique (audit.h, "shares"); −1: none
 };
 
 /// Returns true if the channel is a friction force that the laws of friction leave undetermined at this sample.

@@ -54,7 +54,7 @@ MatX at_rate(const MatX& a, const MatX& b, double rate) {
   return p;
 }
 
-struct Fastest {
+struct FastestGrowth {
   double rate = 0.0;
   VecX eta;
   double swing = 0.0;     // as in FrozenGrowth
@@ -62,7 +62,7 @@ struct Fastest {
 };
 
 // Returns the largest σ with singular P(σ) by bisection on positive definiteness, for symmetric A. Precondition: σ > `least`.
-Fastest fastest_of_symmetric(const MatX& a, const MatX& b, double least) {
+FastestGrowth fastest_of_symmetric(const MatX& a, const MatX& b, double least) {
   double low = least, high = std::max(2.0 * least, std::sqrt(std::max(symmetric_eigen(a).values.maxCoeff(), 0.0)));
   for (int i = 0; i < k_bisections && high - low > 1e-6 * high; ++i) {
     const double middle = 0.5 * (low + high);
@@ -75,8 +75,8 @@ enum class Swings : unsigned char { count, do_not_count };
 
 // Returns the eigenvalue of the first-order equations with the largest real part. Rigid motions without stiffness are separated first, with
 // their rounding. `size_of` returns |K| |x| for each column x of displacements along `v.basis`, the scale of that rounding.
-Fastest fastest_of_all(FreeVibration v, const std::function<MatX(const MatX&)>& size_of, Swings swings) {
-  Fastest found;
+FastestGrowth fastest_of_all(FreeVibration v, const std::function<MatX(const MatX&)>& size_of, Swings swings) {
+  FastestGrowth found;
   if (v.a.cols() > k_most_companion) return found;
   v.part_loose(size_of);
   std::vector<FreeMode> modes;
@@ -99,7 +99,7 @@ Fastest fastest_of_all(FreeVibration v, const std::function<MatX(const MatX&)>& 
 }
 
 // Returns the fastest growth if it may exceed `least`, else an empty result.
-Fastest fastest_above(double least, const FreeVibration& v, const std::function<MatX(const MatX&)>& size_of, Swings swings) {
+FastestGrowth fastest_above(double least, const FreeVibration& v, const std::function<MatX(const MatX&)>& size_of, Swings swings) {
   const auto is_skewed = [](const MatX& m) { return (m - m.transpose()).cwiseAbs().sum() > k_skew * m.cwiseAbs().sum(); };
   const bool is_skew = is_skewed(v.a);
   const MatX a = symmetric_part(v.a), b = symmetric_part(v.b);
@@ -107,7 +107,7 @@ Fastest fastest_above(double least, const FreeVibration& v, const std::function<
   const bool may_swing = swings == Swings::count && (is_skew || is_skewed(v.b) || symmetric_eigen(b).values.maxCoeff() > 2.0 * least);
   if (!may_swing && is_positive_definite(at_rate(a, b, least))) return {};
   if (!may_swing && !is_skew) return fastest_of_symmetric(a, b, least);
-  Fastest fastest = fastest_of_all(v, size_of, swings);
+  FastestGrowth fastest = fastest_of_all(v, size_of, swings);
   fastest.may_swing = may_swing;
   return fastest;
 }
@@ -307,7 +307,8 @@ FrozenGrowth FrozenLeg::growth_at(const State& state, double least, std::size_t 
   const MatX a = unweighted.transpose() * stiffness * unweighted, b = unweighted.transpose() * statics_.damping() * unweighted;
   const MatX size = stiffness.cwiseAbs();
   const auto size_of = [&size](const MatX& shapes) { return MatX(size * shapes.cwiseAbs()); };
-  const Fastest fastest = fastest_above(least, {a, b, unweighted, {}, {}}, size_of, is_at_rest_ ? Swings::count : Swings::do_not_count);
+  const FastestGrowth fastest =
+      fastest_above(least, {a, b, unweighted, {}, {}}, size_of, is_at_rest_ ? Swings::count : Swings::do_not_count);
   if (!(fastest.rate > least)) return {};
   const VecX shape = (z * fastest.eta).normalized();
   if (fastest.may_swing) return {fastest.rate, shape, fastest.swing};
@@ -346,7 +347,7 @@ FrozenGrowth FrozenLeg::steady_growth_at(const State& state, double least) {
   const MatX a = out * by_pose * in, b = out * by_velocity * in;
   const MatX size = out.cwiseAbs() * by_pose.cwiseAbs() * in.cwiseAbs();
   const auto size_of = [&size](const MatX& shapes) { return MatX(size * shapes.cwiseAbs()); };
-  const Fastest fastest = fastest_above(least, {a, b, MatX::Identity(z.cols(), z.cols()), {}, {}}, size_of, Swings::count);
+  const FastestGrowth fastest = fastest_above(least, {a, b, MatX::Identity(z.cols(), z.cols()), {}, {}}, size_of, Swings::count);
   if (!(fastest.rate > least)) return {};
   return {fastest.rate, (z * fastest.eta).normalized(), fastest.swing};
 }

@@ -263,7 +263,7 @@ void forget(const RunResult& run, GlobalErrorEstimate& estimate) {
   if (run.statistics.dissipated != 0.0) estimate.dissipated = unknown;
   if (run.statistics.work != 0.0) estimate.work = unknown;
   estimate.error.worst.fill({unknown, "", 0.0});
-  estimate.reason_unknown = "no finer run took shorter steps, so that none tells an error";
+  estimate.reason_unknown = "no finer run took shorter steps, so the error cannot be estimated";
 }
 
 // Sets the error of event times to unknown if an event has no partner.
@@ -336,7 +336,7 @@ void forget_from(double t, const RunResult& run, const ReferenceRuns& pair, Glob
   for (std::size_t i = 0; i < run.events.size(); ++i)
     if (run.events[i].t < t) estimate.event_times[i] = times[i];
   estimate.reason_unknown = "two runs by " + tolerances_of(pair) + " part at t = " + rounded_text(t, 4) +
-                            " s, so that the motion from there on depends on the last digits, and no run tells it";
+                            " s, so the motion from there on depends on the last digits and cannot be computed";
 }
 
 // Estimates the errors of `run` by reference runs. Returns false if there are none.

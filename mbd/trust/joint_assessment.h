@@ -55,7 +55,7 @@ struct JointAssessment {
   double time_of_smallest = 0.0;           ///< s
   double least_margin = 1.0;               ///< margin that the model requires
   Extreme least_pressure;                  ///< Pa, of any interface at any time
-  Extreme corner_margin, part_margin;      ///< smallest margin of a corner or packet by itself; NaN if there is only one
+  Extreme corner_margin, part_margin;      ///< smallest margin of a single corner or packet; NaN if there is only one
   double largest_demand = 0.0;             ///< largest force on the limb, N
   double weight = 0.0;                     ///< weight of the limb, N
   bool is_loaded = false;                  ///< the force on it changed by more than rounding relative to its weight

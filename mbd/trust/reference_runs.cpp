@@ -42,13 +42,14 @@ bool is_fine_enough(const RunDifference& own, const RunDifference& of_run) {
 }
 
 // One run of the sequence of tolerances.
-struct Rung {
+struct LadderRun {
   SimulationOptions options;
   RunResult run;
 };
 
 // Returns the reference `fine` with its error estimated from the difference to `coarse`.
-ReferenceRuns pair_of(const Rung& coarse, const Rung& fine, std::size_t stride, const System& system, const EventFilter& is_counted) {
+ReferenceRuns pair_of(const LadderRun& coarse, const LadderRun& fine, std::size_t stride, const System& system,
+                      const EventFilter& is_counted) {
   ReferenceRuns pair;
   pair.stride = stride;
   pair.own = compare_runs(system, coarse.run, fine.run, is_counted, stride);
@@ -72,7 +73,7 @@ RunResult EvaluationBudget::simulate(const System& system, const State& initial,
   try {
     for (long steps = 0; simulation.advance(); ++steps)
       if (steps % k_steps_between_checks == 0 && static_cast<double>(simulation.statistics().evaluations) > most)
-        throw EvaluationBudgetExceeded("given up after " + number_text(std::min(most_of_run, most_)) +
+        throw EvaluationBudgetExceeded("aborted after " + number_text(std::min(most_of_run, most_)) +
                                        " evaluations, at t = " + number_text(simulation.state().t) + " s of a finer run");
   } catch (const NumericalFailure&) {
     count(simulation.statistics());
@@ -93,7 +94,7 @@ std::optional<ReferenceRuns> reference_runs(const System& system, const State& i
   next.integrator = k_method;
   next.settings.step = 0.0; // chosen by the method; from a very short given step both runs would grow their steps alike
   next.settings.tolerance = k_first_tolerance;
-  Rung coarse{thinned_out(next, system, run, stride), {}}, fine;
+  LadderRun coarse{thinned_out(next, system, run, stride), {}}, fine;
   std::optional<ReferenceRuns> best;
   try { // the next run may fail or be too expensive; the earlier ones then decide
     coarse.run = budget.simulate(system, initial, coarse.options, left());
@@ -101,7 +102,7 @@ std::optional<ReferenceRuns> reference_runs(const System& system, const State& i
       // Other limits on the steps are divided too. Otherwise both runs would take the same steps and have no difference.
       next.settings.division *= k_division;
       next.settings.tolerance *= k_tightening;
-      Rung finer{next, budget.simulate(system, initial, next, left())};
+      LadderRun finer{next, budget.simulate(system, initial, next, left())};
       const RunResult& before = best ? fine.run : coarse.run;
       if (is_stepped(before) || is_stepped(finer.run) || finer.run.statistics.steps <= before.statistics.steps) break;
       if (best) {

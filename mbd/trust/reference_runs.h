@@ -31,7 +31,7 @@ public:
   /// Runs the simulation. Throws EvaluationBudgetExceeded if it needs more evaluations than are left, or more than `most_of_run`.
   [[nodiscard]] RunResult simulate(const System& system, const State& initial, const SimulationOptions& options,
                                    double most_of_run = std::numeric_limits<double>::infinity());
-  /// Returns the cost of all runs so far, including those that were given up.
+  /// Returns the cost of all runs so far, including aborted ones.
   [[nodiscard]] const RunStatistics& spent() const { return spent_; }
   /// Returns the number of evaluations left.
   [[nodiscard]] double left() const { return most_ - static_cast<double>(spent_.evaluations); }

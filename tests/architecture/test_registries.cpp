@@ -193,7 +193,7 @@ std::vector<EquationLine> equation_table() {
   std::ifstream lines(std::string(STEPLAP_SOURCE) + "/docs/explanation/theory.md");
   bool is_inside = false;
   for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("###")) is_inside = line == "### Each equation once";
+    if (line.starts_with("##")) is_inside = line == "### Each equation once";
     if (!is_inside || !line.starts_with("| ") || line.starts_with("| equation")) continue;
     const std::size_t begin = line.find(" | ") + 3, end = line.find(" | ", begin);
     EquationLine& made = table.emplace_back();

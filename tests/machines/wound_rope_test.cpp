@@ -202,5 +202,5 @@ TEST_CASE("a rope that is followed no further ends the run, and is named") {
       signal_entry("constant", "turning", "value = 3.0") +
       element("prescribed_motion", "winch", "a = 'drum'; coordinate = 'angle'; signal = 'turning'; as = 'velocity'"));
   CAPTURE(up);
-  CHECK(has(up, "what hangs on wound_rope 'rope' has run onto its wheel"));
+  CHECK(has(up, "the load on wound_rope 'rope' has run onto its wheel"));
 }

@@ -374,7 +374,7 @@ const RefusedPart k_refused_parts[] = {
     {"name = \"a\"\nfile = \"windy.toml\"\nangle = 0.1", "windy.toml:25:11",
      "acts along an axis of the ground and cannot turn with its part"},
     {"name = \"a\"\nfile = \"odd.toml\"", "odd.toml:17:", "unknown key 'bdy' in the file of a part (did you mean 'body'?)"},
-    {"name = \"a\"\nfile = \"sure.toml\"", "sure.toml:17:1", "[[uncertain]] is about a model as a whole"},
+    {"name = \"a\"\nfile = \"sure.toml\"", "sure.toml:17:1", "[[uncertain]] concerns the whole model"},
     {"name = \"a\"\nfile = \"rod.toml\"\n[[part]]\nname = \"a\"\nfile = \"rod.toml\"", "m.toml:12:8",
      "a part named 'a' exists already (line 8)"},
     {"name = \"a\"\nfile = \"rod.toml\"\n[[element]]\nkind = \"weld\"\nname = \"w\"\na = \"a.edn\"", "m.toml:14:5",

@@ -523,7 +523,7 @@ TEST_CASE("what is wrong with an action is said with its place") {
   says("when = \"load.y > '2 s'\"; do = [\"stop\"]", "unit");
   says("when = \"lod.y > '2 m'\"; do = [\"stop\"]", "did you mean 'load.y'");
   says("when = \"hok opens\"; do = [\"stop\"]", "there is no element 'hok' (did you mean 'hook'?)");
-  says("when = \"hook.force_x > '2 N'\"; do = [\"stop\"]", "no force can hang on it");
+  says("when = \"hook.force_x > '2 N'\"; do = [\"stop\"]", "no force can depend on it");
   says("when = \"1 < 2\"; do = [\"stop\"]", "the same at all times");
 }
 

@@ -31,8 +31,8 @@ void check_text(const std::string& name, const std::string& unit, const std::str
   // A mode is told by codes; what is measured in a unit says which way it counts, or that it means no error at all.
   const bool is_code = name.ends_with("mode");
   CHECK(codes.empty() == !is_code);
-  const bool tells =
-      !sign.empty() || meaning.find("none but error") != std::string::npos || name.ends_with("length") || name.starts_with("edge_force");
+  const bool tells = !sign.empty() || meaning.find("zero up to numerical error") != std::string::npos || name.ends_with("length") ||
+                     name.starts_with("edge_force");
   if (has_value_of_either_sign(unit) && !is_code) CHECK_MESSAGE(tells, "no sign");
 }
 

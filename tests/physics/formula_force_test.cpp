@@ -253,7 +253,7 @@ TEST_CASE("what is wrong with a formula is said with its element, and what would
   says("'5 N' * (value == '1 m')", "compares with ==");
   says("value ? '5 N' : '0 N'", "compare it with something");
   says("'5 N' * (3 +", "ends where");
-  says("'5 N s2/m' * load.ax", "no force can hang on it");
+  says("'5 N s2/m' * load.ax", "no force can depend on it");
   says("'1 1' * drag.force", "there is no 'drag.force'");
 }
 

@@ -34,7 +34,7 @@ bool is_same_fault(const SceneResult& a, const SceneResult& b) {
 std::string SceneResult::text() const {
   if (!model_error.empty()) return "no model: " + model_error;
   if (check.disagreements.empty())
-    return check.outcome == CrossOutcome::vague ? "cannot be told apart after " + number_text(check.known_until) + " s" : "agrees";
+    return check.outcome == CrossOutcome::vague ? "no comparison is possible after " + number_text(check.known_until) + " s" : "agrees";
   return text_of(check.disagreements.front());
 }
 

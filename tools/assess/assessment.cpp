@@ -181,7 +181,7 @@ void assume(Assessment& a) {
   if (a.uncertain->values().size() > 1) a.assumptions.push_back("Uncertain values are taken to be independent of each other.");
   for (const MissingEvidence& missing : a.missing)
     if (a.is_accepted(missing.item))
-      a.assumptions.push_back("Accepted by whoever asked (" + std::string(name_of(missing.item)) + "): " + missing.reason);
+      a.assumptions.push_back("Accepted by the user (" + std::string(name_of(missing.item)) + "): " + missing.reason);
   for (const RecordEvents& record : a.records) {
     const ReadFacts& facts = record.recording.facts;
     if (facts.repeated.count > 0)

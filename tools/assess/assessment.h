@@ -44,7 +44,7 @@ struct Reason {
   std::string criterion, text, source;
   Decision outcome = Decision::energise;
   std::vector<std::string> tests;
-  double excess = 0.0; ///< what was asked of the machine over what is allowed; 0: unknown
+  double excess = 0.0; ///< demand on the machine over the permitted value; 0: unknown
 };
 
 /// All results of an assessment.

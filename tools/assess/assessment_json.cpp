@@ -296,7 +296,7 @@ Json reasons(const Assessment& a) {
   return all;
 }
 
-// Returns the papers as given; "" for what is not stated.
+// Returns the papers as given; "" for missing entries.
 Json shipment(const Shipment& s) {
   Json recorders = Json::array(), handovers = Json::array();
   for (const ShippedRecorder& r : s.recorders)

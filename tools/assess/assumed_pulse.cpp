@@ -91,7 +91,7 @@ private:
     const std::size_t axis = letter.size() == 1 ? std::string(k_letters).find(letter) : std::string::npos;
     if (axis >= k_axes || record.recording.layout.peaks.axis[axis] < 0)
       throw FileError(record.file, "gravity along '" + *reading.gravity + "': '" + record.file +
-                                       "' tells no peaks of that axis. Say that gravity is in none if the list is without it");
+                                       "' has no peaks of that axis. Use gravity \"none\" if the list is without gravity");
     return axis;
   }
 
@@ -109,7 +109,7 @@ private:
     }
     if (!std::isfinite(entry.magnitude))
       throw FileError(record_.file,
-                      "line " + std::to_string(entry.line) + " of '" + record_.file + "' tells no peak: give it, or take the line out");
+                      "line " + std::to_string(entry.line) + " of '" + record_.file + "' has no peak: add it, or remove the line");
     if (!record_.pulse->axis)
       throw FileError(record_.file, "the peak in line " + std::to_string(entry.line) + " of '" + record_.file +
                                         "' has no direction: say along which axis the pulse is taken");
@@ -132,7 +132,7 @@ private:
       return *pulse_.duration;
     }
     throw FileError(record_.file, "line " + std::to_string(entry.line) + " of '" + record_.file +
-                                      "' tells neither how long the shock lasted nor how much the velocity changed: say how long it is "
+                                      "' has neither a duration nor a change of velocity: give the duration "
                                       "taken to last, as in a pulse of \"" +
                                       shape_of(pulse_.shape).name + " 50 ms\"");
   }
@@ -173,20 +173,20 @@ private:
     std::vector<std::string>& notes = record_.assumed;
     const std::string list = "Of '" + record_.file + "' only peaks are known: ";
     notes.push_back(list + "each is taken for a " + shape_of(pulse_.shape).name +
-                    " along all axes at once, from rest to rest, and what it does not tell of an axis for nothing" +
+                    " along all axes at once, from rest to rest; a missing value of an axis counts as zero" +
                     (assumed_lengths_ > 0 ? ", " + counted(assumed_lengths_, "of them", "of them") + " for " +
                                                 quantity_text(*pulse_.duration, "s") + " as assumed"
                                           : "") +
                     ".");
     if (!is_signed_)
-      notes.push_back(list + "no direction is told, so each is run both ways along every axis, one after the other; slid distances are "
+      notes.push_back(list + "no direction is given, so each is run both ways along every axis, one after the other; slid distances are "
                              "sums over all of them.");
     if (record_.pulse->axis && record_.recording.layout.peaks.magnitude >= 0)
       notes.push_back(list + "magnitudes without a direction are taken to be along " + std::string(1, *record_.pulse->axis) + ".");
     if (gravity_) notes.push_back(list + "1 g of each peak along " + std::string(1, k_letters[*gravity_]) + " is taken for gravity.");
     if (other_changes_ > 0)
       notes.push_back(list + "of " + counted(other_changes_, "entry", "entries") +
-                      " the change of velocity is told as more than 20 % other than that of a pulse of the peak and duration told.");
+                      " the listed change of velocity differs by more than 20 % from that of a pulse with the listed peak and duration.");
   }
 
   const AssumedPulse& pulse_;

@@ -40,7 +40,7 @@ double length_of(const Voyage& voyage) {
   return voyage.is_clock ? 1e-9 * static_cast<double>(voyage.to_ns - voyage.from_ns) : voyage.to - voyage.from;
 }
 
-// Intervals of the voyage that no record covers, s from its begin: the first of them, and their sum.
+// Intervals of the voyage that no record covers, s from its begin: the first one, and the sum of all.
 struct Uncovered {
   double from = 0.0, to = 0.0, sum = 0.0;
 };
@@ -104,7 +104,7 @@ std::string coverage_text(const std::vector<RecordEvents>& records) {
             clock_text(records.back(), records.back().recording.facts.last);
   else if (records.size() == 1)
     text += ", from " + rounded_text(records.front().recording.facts.first, 7) + " s to " +
-            rounded_text(records.front().recording.facts.last, 7) + " s of its own time";
+            rounded_text(records.front().recording.facts.last, 7) + " s of its own clock";
   return text + ".";
 }
 
@@ -123,15 +123,15 @@ std::optional<MissingEvidence> uncovered(const std::vector<RecordEvents>& record
   double greatest = 0.0;
   for (const RecordEvents& record : records) {
     if (record.recording.layout.is_peaks)
-      return missing("'" + record.file + "' is a list of peaks, which does not tell when the recorder was on.",
+      return missing("'" + record.file + "' is a list of peaks, which does not state when the recorder was on.",
                      "Read a record with waveforms.");
     for (const double value : record.greatest) greatest = std::max(greatest, value);
     if (!voyage->is_clock) continue;
     if (!record.clock_ns)
-      return missing("'" + record.file + "' does not tell the date and time at which it began.",
+      return missing("'" + record.file + "' does not state the date and time at which it began.",
                      "Give the voyage in the record's own seconds, one record at a time.");
     if (record.clock_has_zone != voyage->has_zone)
-      return missing("'" + record.file + "' tells its time " + (record.clock_has_zone ? "with" : "without") + " a time zone, the voyage " +
+      return missing("'" + record.file + "' states its time " + (record.clock_has_zone ? "with" : "without") + " a time zone, the voyage " +
                          (voyage->has_zone ? "with" : "without") + " one: they cannot be compared.",
                      record.clock_has_zone ? "Give the voyage with zones, as in \"2016-01-04 10:00Z, 2016-01-06 18:00Z\"."
                                            : "Give the voyage without zones, in the time of the recorder.");

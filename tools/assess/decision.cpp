@@ -91,7 +91,7 @@ Reading largest_reading(const DecisionCriterion& c, const Assessment& a) {
   return largest;
 }
 
-// Creates the reason for a criterion on a number that is known to exceed its limit, or not known well enough.
+// Creates the reason for a criterion whose number exceeds its limit or is not known well enough.
 Reason judged(const DecisionCriterion& c, Decision outcome, std::string text, double excess = 0.0) {
   Reason reason{c.name, std::move(text), c.source, outcome, {}, excess};
   if (outcome == Decision::inspect || outcome == Decision::send_back) reason.tests = c.tests;
@@ -114,8 +114,7 @@ Reason judge_reading(const DecisionCriterion& c, const Assessment& a) {
     return judged(c, outcome_of(c), what + shown(largest.value) + where + ", more than " + shown(*c.at_most) + ".",
                   largest.value / *c.at_most);
   if (!largest.is_known)
-    return judged(c, Decision::open,
-                  "A record does not tell all that '" + c.name + "' asks: an axis, or frequencies that high, are not in it.");
+    return judged(c, Decision::open, "The records lack data that '" + c.name + "' requires: an axis, or high frequencies.");
   if (largest.is_beneath)
     return judged(c, Decision::open,
                   "Shocks above " + shown(*c.at_most) +
@@ -162,7 +161,7 @@ Reason without_assumed_return(Reason all, Reason known) {
   if (known.outcome == Decision::send_back) return known;
   all.outcome = Decision::inspect;
   all.excess = std::numeric_limits<double>::infinity(); // first of all that ask to inspect: by it the machine would be sent back
-  all.text += " The limit is assumed, and no other asks for \"return\": find out the true limit before the machine is sent back.";
+  all.text += " The limit is assumed, and no other requires \"return\": find out the true limit before the machine is sent back.";
   return all;
 }
 
@@ -184,8 +183,7 @@ Reason judge_probability(const DecisionCriterion& c, const Probability& p, const
   if (!waves.empty()) return judged(c, Decision::open, "The probability of " + of + " is not known: " + waves);
   if (p.runs == 0)
     return judged(c, Decision::open,
-                  "The probability of " + of +
-                      " is not known: no model says by [[uncertain]] what is not known exactly, or no samples were asked for.");
+                  "The probability of " + of + " is not known: no model has [[uncertain]] values, or no samples were requested.");
   const std::string text = "The probability of " + of + " is " + percent(p.value) + " (95 % interval " + percent(p.low) + " to " +
                            percent(p.high) + ", " + std::to_string(p.runs) + " samples" +
                            (p.unknown > 0 ? ", " + std::to_string(p.unknown) + " of them without a result" : "") + "); " +
@@ -218,12 +216,12 @@ Reason judge_criterion(const DecisionCriterion& c, const Assessment& a, const Vo
                       "No joint slid further than " + quantity_text(s.slid, "m") + ".");
   if (c.quantity == "overlap_left")
     return judge_flag(c, unknown, s.overlap_left < *c.at_least, *c.at_least / s.overlap_left,
-                      percent(s.overlap_left) + " of an overlap are left; " + percent(*c.at_least) + " are asked.",
+                      percent(s.overlap_left) + " of an overlap remain; " + percent(*c.at_least) + " are required.",
                       "Of every overlap at least " + percent(s.overlap_left) + " are left.");
   if (c.quantity == "margin")
     return judge_flag(c, unknown, s.least_margin < *c.at_least, *c.at_least * demand,
                       "The least margin of a joint is " + rounded_text(s.least_margin, 3) + "; " + rounded_text(*c.at_least, 3) +
-                          " is asked.",
+                          " is required.",
                       "The least margin of a joint is " + rounded_text(s.least_margin, 3) + ".");
   if (c.quantity == "acceptance") return judge_acceptance(c, s, unknown);
   if (c.quantity == "slip_probability") return judge_probability(c, largest_slip(a), "slip in an event", waves_unknown(a));
@@ -250,7 +248,8 @@ void add_own(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& r
   };
   for (const MissingEvidence& missing : a.missing)
     if (!a.is_accepted(missing.item))
-      open("evidence", missing.reason + " " + missing.remedy + " (accept " + name_of(missing.item) + " takes it upon whoever decides.)");
+      open("evidence",
+           missing.reason + " " + missing.remedy + " (accept " + name_of(missing.item) + " puts the responsibility on the user.)");
   if (!a.shared.empty()) reasons.push_back(judge_planes(s));
   if (!s.unknown.empty()) open("runs to trust", "Not every event could be judged: " + s.unknown);
 }

@@ -119,7 +119,7 @@ void add_across(Model& model, const Recorder& recorder, std::vector<std::string>
       is_any |= is_taken(joint->transverse_acceleration, joint->name);
   if (!is_any)
     throw ModelError(recorder.place("across"), "the recorder '" + recorder.name +
-                                                   "' has an axis across, and nothing in the model asks for it: give the core a "
+                                                   "' has an axis across that the model does not use: give the core a "
                                                    "'transverse_acceleration' (any signal, which the record replaces) and a "
                                                    "'transverse_support', or leave 'across' out");
   auto definition = std::make_shared<Recorded>();

@@ -48,7 +48,7 @@ void find_what_it_hangs_on(const AssessmentOptions& options, Assessment& a) {
   const std::vector<UncertainValue>& values = a.uncertain->values();
   for (std::size_t i = 0; i < values.size(); ++i)
     for (const double p : {k_tail, 1.0 - k_tail}) {
-      if (options.progress) options.progress("what it hangs on", static_cast<long>(i), static_cast<long>(values.size()));
+      if (options.progress) options.progress("dependence of the decision", static_cast<long>(i), static_cast<long>(values.size()));
       const std::optional<Turn> turn = turn_towards(a, i, a.uncertain->quantile(i, p));
       if (!turn) continue;
       const std::string why = turn->summary.slips && !a.summary.slips ? turn->summary.first_slip
@@ -57,7 +57,7 @@ void find_what_it_hangs_on(const AssessmentOptions& options, Assessment& a) {
       const Decision own = decision_of(a, a.summary);
       const std::string by_itself =
           own == a.decision ? "The decision" : "By the models' own values the decision would be \"" + std::string(name_of(own)) + "\". It";
-      a.hangs_on.push_back(by_itself + " hangs on the " + values[i].name + ": at " + quantity_text(turn->value, values[i].unit) +
+      a.hangs_on.push_back(by_itself + " depends on the " + values[i].name + ": at " + quantity_text(turn->value, values[i].unit) +
                            " instead of " + quantity_text(values[i].nominal, values[i].unit) + " it is \"" +
                            name_of(decision_of(a, turn->summary)) + "\"" + (why.empty() ? "" : ", as " + why) + ".");
     }

@@ -66,7 +66,7 @@ std::vector<BodyPose> poses_at(const System& system, const Trajectory& samples, 
   return poses;
 }
 
-// Returns the channels that are read from the samples: poses of all bodies, and what shared frictions need.
+// Returns the channels read from the samples: poses of all bodies, and those needed by shared frictions.
 std::vector<std::string> sampled_channels(const Model& model, const std::vector<std::string>& traced) {
   std::vector<std::string> channels = traced_channels(traced);
   for (const Body& body : model.bodies)

@@ -238,13 +238,14 @@ void order_records(std::vector<RecordEvents>& records, std::string& note, bool& 
   const bool are_alike = std::all_of(records.begin(), records.end(),
                                      [&](const RecordEvents& r) { return r.clock_has_zone == records.front().clock_has_zone; });
   if (have_clocks && !are_alike) {
-    note = "Some records tell their time with a zone and some without, which cannot be compared: they are taken in the order in which they "
-           "were given.";
+    note =
+        "Some records state their time with a zone and some without, which cannot be compared: they are taken in the order in which they "
+        "were given.";
     is_known = false;
     return;
   }
   if (!have_clocks) {
-    note = "Not every record tells when it began: they are taken one after the other, in the order in which they were given.";
+    note = "Not every record states when it began: they are taken one after the other, in the given order.";
     return;
   }
   std::stable_sort(records.begin(), records.end(), [](const RecordEvents& a, const RecordEvents& b) { return *a.clock_ns < *b.clock_ns; });

@@ -53,7 +53,7 @@ public:
     if (record_.bandwidth < k_least_band)
       add(Evidence::bandwidth,
           "The models are driven by frequencies up to " + rounded_text(record_.bandwidth, 3) +
-              " Hz: with less than 50 Hz the pressure that joints need comes out too low.",
+              " Hz: with less than 50 Hz the computed required pressure is too low.",
           record_.is_filtered ? "Give a higher frequency class, or none." : "A record of 100 samples per second or more is needed.");
   }
 
@@ -132,8 +132,9 @@ private:
       if (is_ordinary_end(remark.text)) continue;
       const bool is_end = remark.rows == facts_.rows;
       return add(is_end ? Evidence::cut : Evidence::comments,
-                 is_end ? "The record ends with '" + remark.text + "', which may tell why it ended early: what came after it is not known."
-                        : "Line " + std::to_string(remark.line) + " among the rows says '" + remark.text + "'.",
+                 is_end
+                     ? "The record ends with '" + remark.text + "', which may be the reason for an early end: what followed is not known."
+                     : "Line " + std::to_string(remark.line) + " among the rows says '" + remark.text + "'.",
                  "Find out what it means.");
     }
     if (facts_.remarks.size() >= ReadFacts::k_most_listed)

@@ -129,7 +129,7 @@ public:
     if (failure_) std::rethrow_exception(failure_);
     if (done_ == options_.samples) return;
     throw NumericalFailure(why_ + " after " + std::to_string(done_) + " of " + std::to_string(options_.samples) + " samples." +
-                           (options_.store.empty() ? "" : " Ask again, and it goes on there."));
+                           (options_.store.empty() ? "" : " Repeat the command to continue."));
   }
 
 private:

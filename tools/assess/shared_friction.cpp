@@ -157,7 +157,7 @@ std::optional<PlaneOfFriction> plane_of(std::size_t index, const DrivenModel& mo
     if ((normal_of(*compiled.system, element) - normal).norm() > k_one_line)
       throw ModelError({model.file, 0, 0}, "'" + elements.front() + "' and '" + element + "' are one friction, '" + name +
                                                "', for models of other planes, and act along different lines: give one of them a "
-                                               "'shared_friction' of its own");
+                                               "its own 'shared_friction'");
   plane.tangent = Vec2(normal.y(), -normal.x());
   const Vec2& gravity = compiled.system->gravity;
   plane.gravity = gravity.norm();
@@ -279,7 +279,7 @@ std::string SharedFrictionCourse::disagreement_at_rest() const {
   if (std::abs(first - second) > k_same_load * std::max(first, second))
     return "the friction '" + friction_.name + "' carries " + quantity_text(first, "N") + " at rest in '" + a.model_name + "' and " +
            quantity_text(second, "N") + " in '" + b.model_name +
-           "': make the models agree, or tell two different frictions apart by 'shared_friction'";
+           "': make the models agree, or give two different frictions different names by 'shared_friction'";
   return "";
 }
 
@@ -303,7 +303,7 @@ void SharedFrictionCourse::slide(const std::vector<Instant>& instants, const std
   double mass = plane.gravity > 0.0 ? (*at_rest_)[0] / (plane.tilt * plane.gravity) : std::numeric_limits<double>::infinity();
   if (squares > 0.0 && mass_sum > 0.0) mass = std::min(mass, mass_sum / squares);
   if (!std::isfinite(mass) || !(mass > 0.0)) {
-    passage.disagreement = "nothing tells how heavy the load on '" + friction_.name + "' is: it neither has weight nor is it pulled";
+    passage.disagreement = "the weight of the load on '" + friction_.name + "' is unknown: it neither has weight nor is it pulled";
     return;
   }
   const double mu_static = std::min(traces[0].mu_static, traces[1].mu_static);
@@ -399,7 +399,7 @@ void add_to(VoyageSummary& summary, const SharedFriction& friction, const Shared
       now.planes_slip += ". That is an upper bound, as " + passage.bound;
     } else if (!std::isfinite(least)) {
       now.planes = Verdict::open;
-      now.planes_slip += ". No [[acceptance]] says how far it may: bound the channel 'slide'";
+      now.planes_slip += ". No [[acceptance]] limits it: add one for the channel 'slide'";
     } else {
       now.planes = passage.slid_total > least ? Verdict::inspect : Verdict::hold;
       now.planes_slip += "; " + quantity_text(least, "m") + " are allowed";

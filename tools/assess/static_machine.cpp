@@ -16,7 +16,7 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_beyond = -1e-3; // reserve of friction that has slid on the way; the amount beyond the limit is not measured
+constexpr double k_beyond = -1e-3; // reserve of friction that has slid during loading; by how much the limit was exceeded is not known
 
 int channel_index(const System& system, const std::string& name) {
   for (std::size_t i = 0; i < system.channels.size(); ++i)
@@ -46,7 +46,7 @@ StaticMachine::StaticMachine(const LoadedModel& loaded)
     : model_(with_monitors(loaded.model)), system_(compile(model_)), gravity_(system_->gravity) {
   try {
     at_rest_.rest = equilibrium_at_start(*system_, assemble(model_, *system_));
-  } catch (const RunStopped&) { // says nothing about the machine
+  } catch (const RunStopped&) { // the search was interrupted, so nothing is known about the machine
     throw;
   } catch (const NumericalFailure& failure) {
     throw NumericalFailure("without any acceleration: " + failure_of(failure, model_, *system_, 0.0).text);

@@ -62,7 +62,7 @@ public:
     PresetHeader header;
     FieldTable fields;
     fields.add("name", &PresetHeader::name).required().doc("what results call these loads");
-    fields.add("source", &PresetHeader::source).required().doc("who asks for them, by which document");
+    fields.add("source", &PresetHeader::source).required().doc("who requires them, by which document");
     read_fields(document_.root, fields, &header, {"the loads", {"case"}, {}, {}}, problems_);
     preset_ = {header.name, header.source, {}};
     read_loads();
@@ -77,12 +77,12 @@ private:
       Location where = array ? array->where() : document_.root.where();
       if (where.file.empty()) where.file = path_;
       problems_.push_back(
-          {where, "there are no loads: give each as [[case]] with a name and 'pull', its two accelerations beside gravity"});
+          {where, "there are no loads: give each as [[case]] with a name and 'pull', its two accelerations in addition to gravity"});
       return;
     }
     FieldTable fields;
     fields.add("name", &StaticLoad::name).required().doc("what results call it");
-    fields.add("pull", &StaticLoad::pull).in("m/s^2").required().doc("with which everything is pulled, along x and y, beside gravity");
+    fields.add("pull", &StaticLoad::pull).in("m/s^2").required().doc("acceleration of everything along x and y, in addition to gravity");
     fields.add("plane", &StaticLoad::plane).one_of({"", "lengthwise", "transverse"}).doc("of the models that it is for; both if not given");
     std::set<std::string> names;
     for (const Node& entry : array->children) {
@@ -97,7 +97,7 @@ private:
         problems_.push_back({entry.find("plane")->where(), "'plane' of case '" + load.name + "' is '" + load.plane +
                                                                "': give lengthwise or transverse, or leave it out for both"});
       if (!names.insert(load.name).second)
-        problems_.push_back({entry.where(), "there are two cases '" + load.name + "': give each a name of its own"});
+        problems_.push_back({entry.where(), "there are two cases '" + load.name + "': give each its own name"});
       preset_.loads.push_back(std::move(load));
     }
   }
@@ -114,7 +114,8 @@ const char* name_of(Plane plane) { return plane == Plane::lengthwise ? "lengthwi
 
 const std::vector<StaticPreset>& static_presets() {
   static const std::vector<StaticPreset> k_presets = {
-      {"iec-1g", "1 g in every direction beside gravity, as IEC 60076-1:2011, 5.7.4.2 is commonly quoted (the text itself was not read)",
+      {"iec-1g",
+       "1 g in every direction in addition to gravity, as IEC 60076-1:2011, 5.7.4.2 is commonly quoted (the text itself was not read)",
        all_round(k_g)},
       {"road",
        "EN 12195-1 as a training course on the CTU code quotes it (the text itself was not read): 0.8 g forward, 0.5 g back, 0.5 g "

@@ -104,7 +104,7 @@ private:
     case_.why = why;
   }
 
-  // Finds what gives way first while the load grows.
+  // Finds the element that gives way first while the load grows.
   void follow(double a) {
     const StaticRay ray = grow_pull(machine_, case_.load.pull / a, a);
     if (!ray.limits.empty()) {
@@ -134,7 +134,7 @@ private:
         note(Verdict::open, "there is a rest if the load grows from nothing, but none is found after the same load the other way round: " +
                                 returned_.failure);
     } else {
-      case_.remarks.push_back("the load turned round is not borne, so what it would leave behind was not asked");
+      case_.remarks.push_back("the reversed load is not carried, so its effect on the rest was not computed");
     }
     loose_ = machine_.worked_loose(pull);
     if (loose_.rest) ways_.push_back(&loose_);

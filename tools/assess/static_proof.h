@@ -1,4 +1,4 @@
-// Static proof: tells whether a machine withstands the constant accelerations required by a standard, and the limit in each direction.
+// Static proof: determines whether a machine withstands the constant accelerations required by a standard, and the limit in each direction.
 //
 // The machine is at rest on its vehicle, and the pull of each load (static_preset.h) is added to its gravity (static_machine.h). With
 // friction one load can have many equilibria, depending on the history. Each load is therefore computed in three ways: it grows from zero;

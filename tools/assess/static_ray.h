@@ -1,4 +1,4 @@
-// Increases a pull in one direction until the machine leaves its equilibrium, and finds what gives way at which acceleration.
+// Increases a pull in one direction until the machine leaves its equilibrium, and finds the element that gives way and its acceleration.
 //
 // The pull grows in steps of 10 % to 33 % of its value. The reserve of each watch (static_machine.h) at both ends of a step shows whether
 // it reaches its limit within the step; the limit is then located by bisection.

@@ -19,7 +19,7 @@ using namespace steplap;
 
 namespace {
 
-constexpr int k_batches = 20; // the minimum of them is least disturbed by other processes
+constexpr int k_batches = 20; // the minimum of the batches is least disturbed by other processes
 
 void profile(const char* path, double time, long count, const std::string& coordinates) {
   const Model model = read_model(path, transformer_catalog());

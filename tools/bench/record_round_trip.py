@@ -45,14 +45,14 @@ class Impact:
     is_rigid: bool = False # the tank: its upper part is welded to the lower one, which it else shears on
 
 
-# The paper's emergency stop, and one like it that is harder and as short as a coupling of wagons.
+# The paper's emergency stop, and a similar one that is harder and as short as the coupling of wagons.
 STOP = Impact("stop", -5.886, 0.1)
 SHUNT = Impact("shunt", -19.62, 0.025)
 RIGID_STOP, RIGID_SHUNT = (dataclasses.replace(i, name=i.name + " with a rigid tank", is_rigid=True) for i in (STOP, SHUNT))
-# Where the recorder may sit: body, and the place in the settled pose. The vehicle's motion is that of the lower tank's centre of gravity.
+# Candidate places of the recorder: body, and point in the settled pose. The vehicle's motion is that of the lower tank's centre of gravity.
 PLACES = {"frame": ("lower tank", (0.0, 0.79)), "floor": ("lower tank", (0.0, 0.0)), "far end": ("lower tank", (1.5, 0.79)),
           "wall": ("upper tank", (1.81, 1.95)), "lid": ("upper tank", (0.0, 4.0))}
-# Pressures as shares of what joints need: both slip at the first, both hold at the second.
+# Pressures as fractions of those that the joints need: both slip at the first, both hold at the second.
 WEAK, STRONG = 0.875, 1.15
 
 
@@ -107,7 +107,7 @@ def rows_of(path):
 
 
 def true_run(program, folder, impact, pressure, name):
-    """Joints of the run, and for each place ax, ay and angle from t = -QUIET on."""
+    """Returns the joints of the run, and for each place ax, ay and angle from t = -QUIET on."""
     columns = [f"{place}.{axis}" for place in PLACES for axis in ("ax", "ay")]
     body = (f'[output]\nstep = {FINE!r}\nchannels = {json.dumps(columns + ["upper tank.theta"])}\nalso = {json.dumps(columns)}\n'
             f'[simulation]\nend = {END!r}\n')
@@ -140,7 +140,7 @@ def low_passed(values, cutoff):
 
 
 def write_record(path, motion, recorder, seed):
-    """What the recorder feels is acceleration less gravity, in its own axes, which tilt with the lid; in g."""
+    """The recorder measures acceleration less gravity, in its own axes, which tilt with the lid; in g."""
     dice = random.Random(seed)
     step = 2.0 * recorder.reach / 2 ** recorder.bits
     ax, ay, angles = motion[recorder.place]
@@ -167,7 +167,7 @@ def write_record(path, motion, recorder, seed):
 
 
 def read_record(program, folder, path, recorder):
-    """Way to the cleaned signal, as steplap record makes it."""
+    """Returns the path of the cleaned signal made by steplap record."""
     out = os.path.join(folder, "record")
     options = ["--rest", f"0,{QUIET - 0.05}"] if recorder.rest else ["--gravity", "y"]
     if recorder.frequency_class:
@@ -177,7 +177,7 @@ def read_record(program, folder, path, recorder):
 
 
 def replay_text(impact, pressure, signal, recorder):
-    """The recorder's place moves as recorded; "held": in the stead of vehicle and springs, and its body does not turn, as steplap assess does it."""
+    """Moves the recorder's place as recorded. "held": this replaces vehicle and springs, and its body does not turn, as in steplap assess."""
     text = '[simulation]\nvelocity = [0.0, 0.0]\n' + f"end = {END!r}\n" + '[[element]]\nname = "vehicle"\nremove = true\n'
     if recorder.drive == "held":
         text += ('[[element]]\nname = "front suspension"\nremove = true\n[[element]]\nname = "rear suspension"\nremove = true\n'
@@ -196,10 +196,10 @@ def slid(joint):
     return math.hypot(joint["slid_x"], joint["slid_y"])
 
 
-# --- the vehicle's motion that makes the recorder's place move as recorded ----------------------------------------------------------
-# The drive is piecewise linear with GRID between its corners. The run with one small corner gives the columns of a linear map from
-# drive to record; the least squares of the record's misfit, weighed against the roughness of the drive, give a correction. Several runs
-# repeat that, because feet slide and lift. Shaking tables are made to repeat a record in this way. Along x alone.
+# --- the vehicle's motion that moves the recorder's place as recorded ---------------------------------------------------------------
+# The drive is piecewise linear with GRID between its corners. Runs with one small corner each give the columns of a linear map from drive
+# to record. A least-squares fit of the record's misfit, regularised by the roughness of the drive, gives a correction. Several runs repeat
+# this, because feet slide and lift. Shaking tables reproduce a record in the same way. Only along x.
 GRID, ROW = 4e-3, 2e-3 # s between corners, between compared samples
 DOUBT = 0.5            # m/s^2, of a compared sample
 ROUGH = 1.0            # m/s^2, usual second difference of the drive
@@ -208,7 +208,7 @@ CORNER = 0.05          # m/s^2, of the small one
 
 
 def vehicle_run(program, folder, name, impact, pressure, drive, place):
-    """Joints, and what a recorder feels along x, when the vehicle's acceleration has these corners."""
+    """Returns the joints and the record along x for a vehicle's acceleration with these corners."""
     path = os.path.join(folder, name + "_drive.csv")
     with open(path, "w", encoding="utf-8") as file:
         file.write("t [s],a [m/s^2]\n" + "".join(f"{i * GRID:.6f},{a!r}\n" for i, a in enumerate(drive)))
@@ -225,7 +225,7 @@ def vehicle_run(program, folder, name, impact, pressure, drive, place):
 
 
 def cholesky(matrix):
-    """Lower factor of a symmetric matrix of which the lower half is read."""
+    """Returns the lower Cholesky factor of a symmetric matrix; only its lower half is read."""
     lower = []
     for i, row in enumerate(matrix):
         line = []
@@ -246,7 +246,7 @@ def solve(lower, right):
 
 
 def roughness(corners):
-    """Matrix of the weighed squares of second differences, and a trace of those of the corners, so that it can be inverted."""
+    """Returns the matrix of the weighted squares of second differences, with a small multiple of the identity, so that it can be inverted."""
     weights = [[0.0] * corners for _ in range(corners)]
     for k in range(1, corners - 1):
         for a, p in ((k - 1, 1), (k, -2), (k + 1, 1)):
@@ -259,7 +259,7 @@ def roughness(corners):
 
 @functools.lru_cache(maxsize=None)
 def map_of(program, impact, place): # the tank belongs to the impact
-    """Columns of the linear map, weights of the drive, factor of the normal equations."""
+    """Returns columns of the linear map, weights of the drive, factor of the normal equations."""
     corners, stride = round(END / GRID) + 1, round(GRID / ROW)
     with tempfile.TemporaryDirectory() as folder:
         single = [CORNER if i == 1 else 0.0 for i in range(corners)]
@@ -273,7 +273,7 @@ def map_of(program, impact, place): # the tank belongs to the impact
 
 
 def vehicle_sought(program, folder, impact, pressure, signal, recorder):
-    """Joints of the run whose recorder feels along x what was recorded, as well as a few runs find it."""
+    """Returns the joints of the run whose record along x is nearest to the given one, found by a few runs."""
     rows = [list(row.values()) for row in rows_of(signal)]
     first, step, values = rows[0][0] - QUIET, rows[1][0] - rows[0][0], [row[1] for row in rows]
 
@@ -314,7 +314,7 @@ def truth_of(program, folder, impact):
 
 
 def compared(program, truth, recorder, seed):
-    """Errors of one record: of the required pressure, of slip times and slid distances; joints told wrongly. None: a run came to no end."""
+    """Returns the errors of one record: required pressure, slip times, slid distances, joints judged wrongly. None: a run did not end."""
     runs = {}
     with tempfile.TemporaryDirectory() as folder:
         for name, pressure in truth.pressures.items():
@@ -339,8 +339,8 @@ def compared(program, truth, recorder, seed):
     return {"pressure": worst(pressure), "time": worst(time), "distance": worst(distance), "wrong": wrong}
 
 
-# What is varied, one thing at a time: heading, and the recorders with their names. A recorder on the frame, at the height at which the
-# vehicle's force enters, driven along x, leaves nothing but the record to blame.
+# Variations, one quantity at a time: heading, and the recorders with their names. A recorder on the frame, at the height at which the
+# vehicle's force enters, driven along x, leaves only the record as a source of error.
 def record_tables():
     base, fast = Recorder(), Recorder(rate=1000.0)
     vary = dataclasses.replace
@@ -358,7 +358,7 @@ def record_tables():
     ]
 
 
-# Where the recorder sits, and what is done with its record.
+# Place of the recorder, and treatment of its record.
 def way_tables():
     fast = Recorder(rate=1000.0)
     vary = dataclasses.replace
@@ -371,7 +371,7 @@ def way_tables():
 
 
 def row_of(errors):
-    """The error farthest from zero of all seeds; the seeds' spread tells how much is chance."""
+    """Returns the largest error of all seeds; the spread of the seeds shows how much is chance."""
     if any(e is None for e in errors):
         return f"no end within {PATIENCE:g} s | | | | "
     worst = {key: max((e[key] for e in errors), key=lambda v: (not math.isnan(v), abs(v))) for key in ("pressure", "time", "distance")}
@@ -402,9 +402,9 @@ def print_tables(program, truth, tables, seeds, pool):
             print(f"| {name} | {row_of([f.result() for f in futures])} |", flush=True)
 
 
-# What a small part must keep: a recorder on the frame tells whether joints slip, the pressure to 4 %, times to 8 ms and distances to 0.2 mm, twice
-# what the tables have. A filter at 10 Hz in the recorder delays by 0.225/10 Hz = 23 ms, and a drive of the lid pulls at the wrong place:
-# a comparison that does not see that sees nothing.
+# Bounds for the part that tests run: with a recorder on the frame, slip or no slip must be right, the pressure to 4 %, times to 8 ms and
+# distances to 0.2 mm, twice the errors in the tables. A filter at 10 Hz in the recorder delays by 0.225/10 Hz = 23 ms, and a drive of the
+# lid acts at the wrong place: a comparison that does not detect these detects nothing.
 def check(program, truth):
     good = compared(program, truth, Recorder(), 0)
     slow = compared(program, truth, Recorder(rate=1000.0, low_pass=0.01), 0)

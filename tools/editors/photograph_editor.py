@@ -53,7 +53,7 @@ class Terminal:
         fcntl.ioctl(self.file, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
 
     def wait(self, text, seconds=60):
-        """Until the screen shows the text, and has been still for a while."""
+        """Waits until the screen shows the text and has not changed for a while."""
         end, still = time.monotonic() + seconds, 0.0
         while time.monotonic() < end:
             if select.select([self.file], [], [], 0.2)[0]:

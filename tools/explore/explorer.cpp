@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 constexpr const char* k_page_policy =
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; connect-src 'self'; img-src 'self' data: blob:; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-// A report is a single file with inline scripts. Its sandbox gives it an origin of its own, which the gate refuses.
+// A report is a single file with inline scripts. Its sandbox gives it a separate origin, which the gate refuses.
 constexpr const char* k_report_policy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
     "form-action 'none'; frame-ancestors 'none'; sandbox allow-scripts allow-downloads allow-modals";
@@ -51,7 +51,7 @@ PageReply guarded(const std::function<PageReply()>& work) {
 RunOptions options_for(const WorkQueue::IsStale& is_stale, Estimating estimating) {
   RunOptions options;
   options.estimating = estimating;
-  options.stop = [is_stale] { return is_stale() ? std::string("something newer was asked for") : std::string(); };
+  options.stop = [is_stale] { return is_stale() ? std::string("newer values were requested") : std::string(); };
   return options;
 }
 

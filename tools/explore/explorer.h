@@ -29,7 +29,7 @@
 
 namespace steplap {
 
-/// Answers the requests of pages. A thread of its own does the work.
+/// Answers the requests of pages. A separate thread does the work.
 class Explorer {
 public:
   static constexpr double k_map_seconds = 0.2;         ///< computing time for one request for a map, s

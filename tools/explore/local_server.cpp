@@ -188,7 +188,7 @@ struct LocalServer::Implementation {
   void accept() {
     acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (error) return accept_later(); // no descriptor is free: at once it would fail again
+      if (error) return accept_later(); // no descriptor is free, so an immediate retry would fail again
       if (shared->connections < k_most_connections) {
         beast::error_code ignored;
         socket.set_option(tcp::no_delay(true), ignored);

@@ -14,7 +14,7 @@ struct PageRequest {
   std::string path;     ///< path after the token: "run"; "" for the page itself
   std::string query;    ///< text after the question mark, not decoded
   std::string body;     ///< at most LocalServer::k_longest_body bytes
-  /// Becomes true when the client closes the connection: nobody reads the reply any more.
+  /// Becomes true when the client closes the connection: the reply is no longer read.
   std::shared_ptr<const std::atomic<bool>> is_gone = std::make_shared<std::atomic<bool>>(false);
 };
 

@@ -25,7 +25,7 @@ COLOURS = {"trailer": "trailer", "tank": "tank", "active part": "core", "front l
 
 
 def read_run(folder):
-    """Times, and of each body its poses (x, y, theta); of each joint whether it slips."""
+    """Returns times, the poses (x, y, theta) of each body, and for each joint whether it slips."""
     with open(folder / "trajectory.csv") as file:
         rows = list(csv.reader(line for line in file if not line.startswith("#")))
     names = [name.split(" [")[0] for name in rows[0]]
@@ -37,7 +37,7 @@ def read_run(folder):
 
 
 def number(value):
-    """Hundredths of a pixel, without zeros that say nothing."""
+    """Formats a number to hundredths of a pixel, without trailing zeros."""
     text = f"{value:.2f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
@@ -51,7 +51,7 @@ def polygon(points, style):
 
 
 def keyframes(name, shares, values):
-    """A CSS animation through `values` at `shares` of its duration; what does not change is written once."""
+    """Returns a CSS animation through `values` at `shares` of its duration; constant values are written once."""
     lines, last = [], None
     for i, (share, value) in enumerate(zip(shares, values)):
         is_kept = value == last and i + 1 < len(values) and values[i + 1] == value
@@ -62,14 +62,14 @@ def keyframes(name, shares, values):
 
 
 def move(pose, start, trailer, trailer_start):
-    """From where a body's outline is drawn (its first pose) to a later one, y downwards."""
+    """Returns the transform from the pose in which a body's outline is drawn (its first one) to a later pose, y downwards."""
     x = SCALE * (pose[0] - trailer[0] - start[0] + trailer_start[0])
     y = -SCALE * (pose[1] - start[1])
     return f"transform:translate({number(x)}px,{number(y)}px) rotate({number(math.degrees(start[2] - pose[2]))}deg)"
 
 
 def standing(outline, pose):
-    """The corners of a body's outline in a pose."""
+    """Returns the corners of a body's outline in a pose."""
     c, s = math.cos(pose[2]), math.sin(pose[2])
     return [(pose[0] + c * x - s * y, pose[1] + s * x + c * y) for x, y in outline]
 
@@ -100,7 +100,7 @@ def picture(folder):
         style.append(keyframes(name, shares, values))
         style.append(f".{name}{{animation:{name} {number(duration)}s {timing} infinite;transform-box:view-box}}")
 
-    # The road's dashes come round once a metre of way has passed, the spokes once a third of a turn: both end as they began.
+    # The road's dashes have period 1 m and the spokes a third of a turn, so both end as they began.
     dash = way[-1] / max(1, round(way[-1] / 0.5))
     turn = 120 * max(1, round(math.degrees(way[-1] / WHEEL) / 120)) / way[-1]
     animate("pass", [f"transform:translate({number(-SCALE * way[i])}px,0)" for i in chosen])
@@ -137,7 +137,7 @@ def picture(folder):
 
 
 def slide_text(times, poses, slips):
-    """What is seen, in one sentence."""
+    """Describes the picture in one sentence."""
     first = next(t for t, is_slipping in zip(times, slips["front limb"]) if is_slipping)
     relative = [b[0] - a[0] for a, b in zip(poses["active part"], poses["front limb"])]
     moved = 1000 * (relative[-1] - relative[0])
@@ -145,7 +145,7 @@ def slide_text(times, poses, slips):
 
 
 def clock(times, slips, shares, chosen, animate):
-    """The line of time under the road, red while something slips, with a dot that runs along it."""
+    """Draws the time axis below the road, red while something slips, with a dot that moves along it."""
     left, right, y = 60, WIDTH - 60, HEIGHT - 14
     at = lambda t: left + (right - left) * t / times[-1]
     slipping = [t for i, t in enumerate(times) if any(s[i] for s in slips.values())]

@@ -93,7 +93,7 @@ void check_types(const fs::path& file, const Json& json, const std::string& wher
   }
 }
 
-// Checks what the page needs to begin a drawing.
+// Checks the data needed to begin a drawing.
 void check_drawing(const fs::path& file, const Json& holder, const std::string& where) {
   if (!holder.contains("drawing") || holder["drawing"].is_null()) return;
   const Json& drawing = holder["drawing"];

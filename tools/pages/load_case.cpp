@@ -54,7 +54,7 @@ template <class Choice> void add_entries(OrderedJson& rows, const Node& model, c
   }
 }
 
-// Adds the texts of a node and of what it contains, without names and kinds: whatever refers to a signal is among them.
+// Adds all texts of a node and its descendants, without names and kinds; references to signals are among them.
 void add_texts(const Node& node, std::set<std::string>& texts) {
   if (node.key == "name" || node.key == "kind") return;
   if (node.type == Node::Type::text) texts.insert(node.text());

@@ -1,4 +1,4 @@
-// Lists what loads a model in a run, for readers of a sheet.
+// Lists the loads of a model in a run, for readers of a sheet.
 #pragma once
 
 #include "mbd/run/ordered_json.h"

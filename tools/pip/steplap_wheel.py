@@ -51,7 +51,7 @@ def run(*command):
 
 
 def build(settings):
-    """The folder of a build with the module in it."""
+    """Returns the folder of a build that contains the module."""
     given = settings.get("build-dir")
     folder = (ROOT / (given or "build/pip")).resolve()
     if not given:
@@ -101,7 +101,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 
 def build_sdist(sdist_directory, config_settings=None):
-    """What git knows, with the metadata that a source archive has to hold."""
+    """Makes a source archive of the files known to git, with the required metadata."""
     base = f"steplap-{version()}"
     files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True).stdout.split("\0")
     with tempfile.TemporaryDirectory() as folder, tarfile.open(pathlib.Path(sdist_directory) / f"{base}.tar.gz", "w:gz", format=tarfile.PAX_FORMAT) as archive:

@@ -90,7 +90,7 @@ void add_analysis(py::module_& module) {
       .def_property_readonly(
           "eigenvalue", [](const PyMode& m) { return m.mode.eigenvalue; }, "1/s")
       .def_property_readonly(
-          "residual", [](const PyMode& m) { return m.mode.residual; }, "acceleration that is out of balance, as a share of its own")
+          "residual", [](const PyMode& m) { return m.mode.residual; }, "unbalanced acceleration, relative to its own")
       .def_property_readonly("shape", shape,
                              "body -> (x, y, theta), complex, m and rad; the largest is 1 m, angles taken at the radius of gyration")
       .def("__repr__", [](const PyMode& m) { return "<steplap.Mode of " + std::to_string(m.mode.natural_frequency()) + " Hz>"; });
@@ -108,8 +108,7 @@ void add_analysis(py::module_& module) {
       .def_property_readonly("interfaces", interfaces,
                              "name, overlap of one (m^2), count, pressure (Pa), static_friction of each; none: it holds whatever it takes")
       .def_property_readonly("sliding", three<&JointView::sliding>, "friction while it slides along x, along y or turns, N, N, N m")
-      .def_property_readonly("alone", three<&JointView::alone>,
-                             "largest force along x, along y or couple that it holds by itself, N, N, N m")
+      .def_property_readonly("alone", three<&JointView::alone>, "largest force along x, along y or couple that it holds alone, N, N, N m")
       .def("required", required, py::arg("fx"), py::arg("fy"), py::arg("m"),
            "What a wrench on the limb takes (N, N, N m): usage of the capacity, margin, pressure at the first interface (Pa; None without "
            "interfaces) and centre of rotation "

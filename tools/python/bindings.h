@@ -58,7 +58,7 @@ struct PyRun {
   std::function<std::vector<ResultFile>()> files; ///< makes all files of the run; they refer to this run
 };
 
-/// Returns "path=value" for a dictionary of values, or a list of such texts as it is. Throws TypeError.
+/// Returns "path=value" for a dictionary of values, or a list of such texts unchanged. Throws TypeError.
 [[nodiscard]] std::vector<std::string> overrides_of(const py::object& given);
 
 /// Returns what `estimate` of Python means. Throws ValueError.

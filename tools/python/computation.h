@@ -45,7 +45,7 @@ private:
   py::gil_scoped_release released_;
 };
 
-/// Returns the result of `work(stop)`, computed without the GIL. `stop` is asked by all long loops of the library, and may be given to
+/// Returns the result of `work(stop)`, computed without the GIL. `stop` is polled by all long loops of the library, and may be given to
 /// RunOptions. Raises KeyboardInterrupt if it was pressed meanwhile.
 template <class Work> auto computed(const Work& work) {
   Interruption interruption;

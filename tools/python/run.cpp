@@ -14,8 +14,8 @@
 
 namespace steplap::python {
 
-// Members of a run that are pickled by what they hold or make. A pickle has the files as they were made, because another version of
-// steplap might make other ones.
+// Members of a run are pickled as the data that they hold or compute. A pickle contains the files themselves, because another version of
+// steplap might write others.
 template <> struct MemberPickle<std::shared_ptr<const Columns>> {
   static py::object state(const std::shared_ptr<const Columns>& columns) {
     return py::make_tuple(columns->names, columns->units, py::cast(columns->values));
@@ -234,8 +234,8 @@ void add_run(py::module_& module) {
       run_of, py::name("run"), py::is_method(module.attr("Model")), py::arg("method") = py::none(), py::arg("tolerance") = py::none(),
       py::arg("step") = py::none(), py::arg("end") = py::none(), py::arg("output_step") = py::none(), py::arg("estimate") = "cheap",
       py::arg("second_opinion") = false, py::arg("time_limit") = py::none(), py::arg("memory_limit") = py::none(),
-      "Runs the model and judges the run, as `steplap simulate` does. What is not given is as the model says. Other "
-      "threads of Python go on meanwhile; Ctrl-C ends it. `time_limit`: s, `memory_limit`: bytes of the "
+      "Runs the model and judges the run, as `steplap simulate` does. What is not given is as the model says. "
+      "Other Python threads continue meanwhile; Ctrl-C ends it. `time_limit`: s, `memory_limit`: bytes of the "
       "process; beyond either, `failure` says so and the verdict is open.");
 }
 

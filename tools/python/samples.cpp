@@ -61,7 +61,7 @@ Answer answer_of(const Report& report, const Response& response) {
 
 // Samples of one call, shared by its worker threads. work() runs samples that no other thread has taken, with the thread's own copy of the
 // model.
-struct Crew {
+struct SampleQueue {
   const Model& given;
   const std::string& path;
   const std::vector<std::string>& paths;
@@ -121,7 +121,7 @@ py::tuple samples(const PyModel& model, const std::vector<std::string>& paths, c
   std::vector<std::string> verdicts(count), troubles(count);
   const Model given = given_model(model);
   for (const std::string& path : paths) static_cast<void>(number_of(given, path)); // checks the paths before threads start
-  Crew crew{
+  SampleQueue crew{
       given,   model.loaded->path, paths, responses, values.data(), count, estimating_named(estimate), results.mutable_data(), verdicts,
       troubles};
   if (threads > k_most_threads) throw std::invalid_argument("'threads' may be at most " + std::to_string(k_most_threads));

@@ -12,7 +12,7 @@ INK, BODY, LINE, LOAD = "#222", "#dbe7f3", "#1f6fb2", "#c0392b"
 
 
 def drawing_of(program, model):
-    """What drawing.json says of a model file, with the poses in which its run begins."""
+    """Returns the contents of drawing.json for a model file, with the initial poses of its run."""
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([program, "simulate", model, "-q", "--no-estimate", "--end", "2e-3", "--output-step", "1e-3", "-o", folder], capture_output=True)
         results = pathlib.Path(folder) / model.stem
@@ -27,13 +27,13 @@ def drawing_of(program, model):
 
 
 def sign_of(value):
-    """-1, 0 or 1 of a number, which may have a unit."""
+    """Returns the sign (-1, 0 or 1) of a number, which may have a unit."""
     number = float(re.match(r"[-+.\d]+(?:e[-+]?\d+)?", str(value).strip())[0])
     return (number > 0) - (number < 0)
 
 
 def loads_of(model):
-    """Direction of each load; a couple has none."""
+    """Returns the direction of each load; a couple has none."""
     peaks = {signal["name"]: signal.get("peak", 1) for signal in model.get("signal", [])}
     found = {}
     for element in model["element"]:
@@ -69,7 +69,7 @@ class Picture:
         return (round(WIDTH / 2 + self.scale * (place[0] - self.middle[0]), 1), round(HEIGHT / 2 - self.scale * (place[1] - self.middle[1]), 1))
 
     def circles(self):
-        """Wheels, drums and pitch circles: centre and radius."""
+        """Returns centre and radius of wheels, drums and pitch circles."""
         found = [(body["name"], circle[:2], circle[2]) for body in self.bodies() for circle in body["circles"]]
         found += [(at["body"], at["point"], radius) for element in self.drawing["elements"] for shape in element["shapes"] if shape["type"] == "touch"
                   for at, radius in zip(shape["at"], shape["sizes"])]
@@ -79,7 +79,7 @@ class Picture:
         return [*self.drawing["bodies"], {"name": "ground", **self.drawing["ground"]}]
 
     def straight_part(self, shape):
-        """Ends of a rope between two wheels, of radii that are positive where turning counter-clockwise winds it up; 0: a point."""
+        """Returns the ends of a rope between two wheels. A radius is positive if counter-clockwise rotation winds the rope up; 0: a point."""
         (ax, ay), (bx, by) = (self.place(at["body"], at["point"]) for at in shape["at"])
         radius_a, radius_b = shape["sizes"]
         length = math.hypot(bx - ax, by - ay) or 1

@@ -105,7 +105,7 @@ void check_files(const AccuracyCommand& command, const std::vector<std::shared_p
       if (!seen.insert(file).second)
         throw UsageError("two models are called '" + loaded->name + "' and would be written to the same files");
       if (!command.is_overwriting && fs::exists(file))
-        throw UsageError("'" + file + "' stands there already: choose another folder with -o, or overwrite it with --force");
+        throw UsageError("'" + file + "' exists already: choose another folder with -o, or overwrite it with --force");
     }
 }
 
@@ -171,12 +171,12 @@ work_precision.svg.
       {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
       {"--end", &o->end, "T", "end of the runs, s"},
       {"--integrator", &o->integrators, "NAME", "only these, over the usual ladder; may be repeated"},
-      {"--setting", &o->settings, "NAME@VALUE", "an entry of its own: a tolerance, or the step of a fixed-step method"},
+      {"--setting", &o->settings, "NAME@VALUE", "a further setting: a tolerance, or the step of a fixed-step method"},
       {"--reference", &o->references, "NAME@VALUE", "given twice: the two that have to agree (dop853@1e-13, tsit5@1e-13)"},
       {"--error", &o->wanted, "E", "name the cheapest setting for this error (default: 1e-3, 1e-6, 1e-9)"},
       {"--repeats", &o->repeats, "N", "runs of which the fastest counts, at most; of long ones fewer (default: 3)"},
       {"--budget", &o->budget, "S", "CPU time for all settings of a model together, s, the reference not counted (default: 5)"},
-      {"--cpu-limit", &o->cpu_limit, "S", "a run that needs more CPU time is given up, s (default: 60)"},
+      {"--cpu-limit", &o->cpu_limit, "S", "a run that needs more CPU time is aborted, s (default: 60)"},
       {"-f,--force", &o->is_overwriting, "", "overwrite earlier results"}};
   command.prints_tables = true;
   command.run = [o](Console& console) { return accuracy(*o, console); };

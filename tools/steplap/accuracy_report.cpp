@@ -234,7 +234,7 @@ std::string accuracy_csv(const AccuracyStudy& study) {
   std::string csv = "integrator,tolerance,step [s],cpu [s],steps,rejected,evaluations,events,unmatched events,"
                     "positions,velocities,reactions,event times,energy,constraints,pareto,failure\n";
   csv += "# the times, what is Pareto by them and which settings the budget of " + number_text(study.budget) +
-         " s had room for hang on the computer and on its clock\n";
+         " s permitted depend on the computer and on its clock\n";
   for (const AccuracyEntry& e : study.entries) {
     const std::string value = number_text(e.setting.value);
     csv += e.setting.integrator + (e.setting.is_step ? ",," + value : "," + value + ",");
@@ -270,7 +270,7 @@ std::string work_precision_svg(const AccuracyStudy& study, const std::string& ti
                     "\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" "
                     "height=\"100%\" fill=\"white\"/>\n" +
                     label(k_left, 22.0, "start", escaped(title), " font-size=\"14\"") + grid(x, y) +
-                    "<desc>Times are measured: they, and which settings a budget of time had room for, hang on the computer.</desc>\n";
+                    "<desc>Times are measured: they, and the settings that a time budget permitted, depend on the computer.</desc>\n";
   double resolution = 0.0;
   for (const ErrorKind kind : k_kinds)
     if (study.is_resolved(kind)) resolution = std::max(resolution, study.resolution.of(kind).value);

@@ -72,8 +72,8 @@ Of a static proof (docs/how-to/prove_statically.md): 0 the machine is proven to 
       {"--budget", &o->budget, "S", "computing time, for each day of record, to find how low the threshold has to be: 60"},
       {"--pulse", &o->pulse, "SHAPE",
        "of lists of peaks without waveforms: drive the models by a half-sine, haversine or triangle; \"half-sine 50 ms\" where the list "
-       "does not tell how long. The decision is open unless --accept peaks"},
-      {"--pulse-axis", &o->pulse_axis, "AXIS", "x, y or z: that of peaks whose list tells no direction"},
+       "states no duration. The decision is open unless --accept peaks"},
+      {"--pulse-axis", &o->pulse_axis, "AXIS", "x, y or z: direction of peaks whose list states none"},
       {"--no-estimate", &o->is_estimate_left_out, "", "do not estimate errors of the runs"},
       {"--static", &o->static_preset, "PRESET", "constant loads instead of records: iec-1g, road, sea, or a file of your own (.toml)"},
       {"--plane", &o->plane, "PLANE",

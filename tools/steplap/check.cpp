@@ -278,7 +278,7 @@ void note_missing_format(std::ostream& out, const std::vector<std::shared_ptr<co
 }
 
 ExitCode update_files(const CheckOptions& options, Console& console) {
-  if (!options.overrides.empty()) throw UsageError("--update rewrites a file as it is, so --set has no place here: leave --set out");
+  if (!options.overrides.empty()) throw UsageError("--update rewrites the file itself, so --set is not allowed: leave --set out");
   for (const std::string& path : options.models)
     if (is_standard_input(path)) throw UsageError("--update rewrites a file, and the standard input is none: name the file");
   for (const auto& loaded : load_models(options.models)) {

@@ -37,7 +37,7 @@ Examples:
   steplap simulate my.toml -o out
   steplap simulate my.toml --set "element.front foot.stiffness=2 GN/m" --integrator dop853
   steplap elements spring_damper
-"steplap help COMMAND" tells the options of a command.)";
+"steplap help COMMAND" lists the options of a command.)";
 
 struct BindOption {
   CLI::App& app;
@@ -75,7 +75,7 @@ void bind(CLI::App& app, const Command& command, bool is_meant, CommonFlags& fla
   if (!command.examples.empty()) sub->footer("Examples:\n" + command.examples);
   for (const Option& option : command.options) std::visit(BindOption{*sub, option}, option.target)->required(option.is_required);
   if (command.prints_tables) sub->add_flag("--json", flags.is_json, "print what the screen says as JSON instead, with all digits");
-  CLI::Option* quiet = sub->add_flag("-q,--quiet", flags.is_quiet, "say nothing but errors");
+  CLI::Option* quiet = sub->add_flag("-q,--quiet", flags.is_quiet, "print errors only");
   sub->add_flag("-v,--verbose", flags.is_verbose, "say more about what is done")->excludes(quiet);
 }
 
@@ -176,7 +176,7 @@ ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::strin
   return ExitCode::usage;
 }
 
-// Returns the options as known to the parser as JSON, for completion scripts and man pages.
+// Returns the options of the parser as JSON, for completion scripts and man pages.
 OrderedJson options_json(const CLI::App& app) {
   OrderedJson options = OrderedJson::array();
   for (const CLI::Option* option : app.get_options()) {

@@ -10,7 +10,7 @@
 namespace steplap {
 
 /// Runs `arguments` (without the program's name) and returns the exit code (command.h). Errors are reported on `err`; never throws.
-/// `is_terminal` tells that `err` is a terminal, on which progress may be shown.
+/// `is_terminal` states that `err` is a terminal, on which progress may be shown.
 int run_command_line(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err, bool is_terminal);
 
 /// Flushes the output at the end of a program. Returns `code`, or an error code if the output could not be written.

@@ -107,8 +107,8 @@ void print_compliance(std::ostream& out, const Core& core, const CoreGeometry& g
     out << "  yields by " << quantity_text(core.tangential_stiffness.value_or(area / compliance), "N/m") << " before it slides\n";
   }
   if (!core.edge_stiffness) return;
-  out << "  edges bear " << quantity_text(*core.edge_stiffness, "N/m^2") << " along the mitre once " << metres(core.clearance.value_or(0.0))
-      << " have closed";
+  out << "  edges carry " << quantity_text(*core.edge_stiffness, "N/m^2") << " along the mitre once "
+      << metres(core.clearance.value_or(0.0)) << " have closed";
   if (core.allowed_line_load) out << ", allowed " << quantity_text(*core.allowed_line_load, "N/m");
   if (const long sheets = core.is_counted() ? 0 : sheets_in(geometry.stack()); core.allowed_line_load && sheets > 0)
     out << ", " << quantity_text(*core.allowed_line_load / (static_cast<double>(sheets) * *core.sheet_thickness), "Pa");
@@ -230,8 +230,7 @@ ExitCode core(const CoreOptions& options, Console& console) {
   std::ostream& out = files.has_words() ? console.out : silent;
   const bool is_drawn_there = options.image && is_standard_output(*options.image);
   if (is_drawn_there && cores.size() > 1)
-    throw UsageError("--svg -: there are " + std::to_string(cores.size()) +
-                     " cores, each with a drawing of its own: choose one with --core");
+    throw UsageError("--svg -: there are " + std::to_string(cores.size()) + " cores with one drawing each: choose one with --core");
   for (std::size_t i = 0; i < cores.size(); ++i) {
     if (i > 0) out << "\n";
     print_core(out, clamped(*cores[i], loaded->model), loaded->model);

@@ -73,7 +73,7 @@ std::string conclusion(const CrossCheck& check, double end) {
   if (check.outcome == CrossOutcome::vague && check.known_until == 0.0)
     return "no disagreement, but time stepping has no opinion: its steps are too coarse for what happens here";
   if (check.outcome == CrossOutcome::vague)
-    return "no disagreement, but cannot be told apart after " + time_text(check.known_until) + " s of " + number_text(end) +
+    return "no disagreement, but no comparison is possible after " + time_text(check.known_until) + " s of " + number_text(end) +
            " s: small differences grow as large as the motion";
   return "all agree; the worst disagreement is " + small_text(check.worst_ratio) + " of what the estimates allow";
 }

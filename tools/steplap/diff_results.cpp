@@ -264,7 +264,7 @@ std::size_t print_extremes(std::ostream& out, const Json& a, const Json& b) {
   return rows.size();
 }
 
-// Prints what exists in one of the runs only, and returns the number of such entries.
+// Prints entries that exist in one of the runs only, and returns their number.
 std::size_t print_missing(std::ostream& out, const Json& a, const Json& b) {
   std::size_t count = 0;
   for (const bool is_gone : {true, false}) {

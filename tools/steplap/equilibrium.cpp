@@ -25,7 +25,7 @@ using Align = TextTable::Align;
 
 constexpr double k_unit = 1e-3; // m, rad; values below 1e-9 of it are regarded as rounding
 
-const char* const k_of_one_rest = " at this one of many rests: they depend on the way to it, since friction holds the machine";
+const char* const k_of_one_rest = " at this rest, which is one of many: they depend on the path, since friction holds the machine";
 
 struct EquilibriumOptions {
   std::vector<std::string> models;

@@ -80,7 +80,7 @@ ExitCode explore(const ExploreOptions& options, Console& console) {
   if (!options.is_without_browser && (!has_screen || !open_browser(server.first_address())))
     log_info("No browser could be opened: open the address in one");
   if (console.verbosity != Verbosity::quiet)
-    console.out << "The page is served on this computer alone, to whoever has this address. Ctrl-C ends it.\n" << std::flush;
+    console.out << "The page is served on this computer only, to anyone who has this address. Ctrl-C ends it.\n" << std::flush;
   server.run([&explorer] {
     if (noted_signal() != 0) return false;
     explorer.tick();
@@ -95,7 +95,7 @@ Command explore_command() {
   const auto o = std::make_shared<ExploreOptions>();
   Command command;
   command.name = "explore";
-  command.summary = "a page in the browser that runs models anew while one drags their values";
+  command.summary = "a page in the browser that runs models while you drag their values";
   command.examples = R"(  steplap explore my.toml
   steplap explore models/paper/no_interference.toml --set simulation.end="0.4 s"
   steplap explore my.toml --no-browser --port 8765

@@ -120,13 +120,13 @@ void print_usage(std::ostream& out, const JointView& view, const Vec3& wrench) {
 void print_sharing(std::ostream& out, const JointView& view) {
   if (is_elastic(*view.joint)) out << "elastic: yields before it slides";
   if (view.beside.empty()) {
-    if (is_elastic(*view.joint)) out << "; nothing bears beside it\n";
+    if (is_elastic(*view.joint)) out << "; no other element carries load in parallel\n";
     return;
   }
   std::string names;
   for (const std::string& name : view.beside) names += (names.empty() ? "" : ", ") + name;
   if (is_elastic(*view.joint)) out << ", shares its load with " << names << ": the capacity is the joint's part alone\n";
-  else out << "rigid: bears the whole load until it slides; only then bear " << names << "\n";
+  else out << "rigid: carries the whole load until it slides; only then load is taken by " << names << "\n";
 }
 
 void print_joint(std::ostream& out, const JointView& view, const std::optional<Vec3>& wrench) {
@@ -171,7 +171,7 @@ Command joint_command() {
   const auto o = std::make_shared<JointOptions>();
   Command command;
   command.name = "joint";
-  command.summary = "what the step-lap joints of a model can bear, and the pressure that a wrench takes";
+  command.summary = "capacity of the step-lap joints of a model, and the pressure that a wrench requires";
   command.examples = R"(  steplap joint models/paper/no_interference.toml
   steplap joint my.toml --joint "front joint" --wrench "53 kN,-88 kN,0"
   steplap joint my.toml --wrench 0,-88290,-2e3 --set core.core.pressure="60 kPa"

@@ -28,15 +28,15 @@ struct PlotOptions {
 };
 
 // Contents of a figure, before the runs are known.
-struct Wanted {
+struct FigureRequest {
   std::string title;
   std::vector<std::string> channels, bounds;
 };
 
-std::vector<Wanted> plots_of_model(const Results& run, const std::vector<std::string>& names) {
+std::vector<FigureRequest> plots_of_model(const Results& run, const std::vector<std::string>& names) {
   const auto drawing = nlohmann::json::parse(run.drawing, nullptr, false);
   if (drawing.is_discarded()) throw UsageError("'" + run.folder + "/drawing.json' is not as steplap wrote it: run the model again");
-  std::vector<Wanted> wanted;
+  std::vector<FigureRequest> wanted;
   std::vector<std::string> known;
   for (const auto& plot : drawing["plots"]) known.push_back(plot["name"]);
   for (const std::string& name : names) {
@@ -57,7 +57,7 @@ std::vector<const ResultChannel*> asked_channels(const Results& run, const std::
   throw UsageError("'" + run.folder + "': no channel matches '" + pattern + "'" + did_you_mean(pattern, known));
 }
 
-void add_curves(const Results& run, const std::string& suffix, int dash, const Wanted& wanted, Panel& panel) {
+void add_curves(const Results& run, const std::string& suffix, int dash, const FigureRequest& wanted, Panel& panel) {
   int colour = 0;
   const auto add = [&](const ResultChannel& channel, const std::string& label, int its_colour, int its_dash, double sign) {
     if (!panel.curves.empty() && channel.unit != panel.unit)
@@ -75,10 +75,10 @@ void add_curves(const Results& run, const std::string& suffix, int dash, const W
     }
 }
 
-Figure figure_of(const std::vector<Results>& runs, const std::vector<Wanted>& figures, bool is_beside) {
+Figure figure_of(const std::vector<Results>& runs, const std::vector<FigureRequest>& figures, bool is_beside) {
   Figure figure;
   figure.columns = is_beside ? static_cast<int>(runs.size()) : 1;
-  for (const Wanted& wanted : figures) {
+  for (const FigureRequest& wanted : figures) {
     Panel all{wanted.title, "", {}};
     for (std::size_t r = 0; r < runs.size(); ++r) {
       Panel own{wanted.title + " (" + runs[r].name + ")", "", {}};
@@ -137,7 +137,7 @@ ExitCode plot(const PlotOptions& options, Console& console) {
   if (options.channels.empty() == options.plots.empty()) throw UsageError("say what to plot: either --channels or --plot");
   std::vector<Results> runs;
   for (const std::string& folder : options.results) runs.push_back(read_results(folder));
-  std::vector<Wanted> figures{{"", options.channels, {}}};
+  std::vector<FigureRequest> figures{{"", options.channels, {}}};
   if (!options.plots.empty()) figures = plots_of_model(runs.front(), options.plots);
   files.write(options.output, drawn(figure_of(runs, figures, options.is_beside), ending.substr(1), options.output));
   if (files.has_words()) console.out << "Written to " << options.output << "\n";

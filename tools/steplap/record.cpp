@@ -212,7 +212,7 @@ void print_result(std::ostream& out, const RecordResult& result, const std::opti
 }
 
 // A sink that ignores the signal; only the Conditioner before it matters.
-class Nowhere : public SignalSink {
+class DiscardingSink : public SignalSink {
 public:
   void begin(const RecordLayout&, double) override {}
   void begin_segment(std::size_t) override {}
@@ -223,7 +223,7 @@ public:
 // Returns the mean acceleration of each segment. This requires reading the file a first time.
 std::vector<std::array<double, 3>> means_of(const std::string& file, const RecordOptions& options, const Conditioning& conditioning) {
   if (is_standard_input(file)) throw UsageError("--drift line of a whole signal needs a file that can be read twice, not standard input");
-  Nowhere nowhere;
+  DiscardingSink nowhere;
   GravityFirst first(conditioning, options.gravity, options, nowhere);
   LineSource source(file);
   const Recording recording = read_record(source, read_options(options), first);

@@ -26,7 +26,7 @@ std::string page_of_results(const std::vector<std::string>& folders) {
   const auto assessment = std::find_if(folders.begin(), folders.end(), is_assessment);
   if (assessment != folders.end()) {
     if (folders.size() > 1)
-      throw FileError(*assessment, "'" + *assessment + "' holds an assessment, which has a page of its own: name its folder alone");
+      throw FileError(*assessment, "'" + *assessment + "' holds an assessment, which has its own page: name only its folder");
     return assessment_page(folders.front());
   }
   std::vector<Results> runs;

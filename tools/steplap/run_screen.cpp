@@ -221,12 +221,12 @@ void print_slides(std::ostream& out, const TabledRun& run) {
 // Prints the largest line load on sheet edges in contact, and the elements that carry load in parallel with a joint.
 void print_beside(std::ostream& out, const std::string& joint, const Json& a) {
   if (const auto load = optional_at(a, "largest_edge_load"); load && *load > 0.0) {
-    out << "  " << joint << ": sheet edges bore up to " << measured_text(*load, error_at(a, "error_largest_edge_load"), "N/m");
+    out << "  " << joint << ": sheet edges carried up to " << measured_text(*load, error_at(a, "error_largest_edge_load"), "N/m");
     if (const auto allowed = optional_at(a, "allowed_line_load")) out << ", allowed are " << quantity_text(*allowed, "N/m");
     out << "\n";
   }
   if (!a.contains("shared_with")) return;
-  out << "  " << joint << ": margin of its own share; beside it";
+  out << "  " << joint << ": margin of its own share; in parallel";
   const char* before = " '";
   for (const Json& shared : a.at("shared_with")) {
     out << before << text_at(shared, "element") << "'";
@@ -271,7 +271,7 @@ void print_second_opinion(std::ostream& out, const Json& opinion, double end) {
   if (!text_at(opinion, "disagreement").empty()) out << "disagrees\n";
   else if (!text_at(opinion, "none_because").empty()) out << "none; " << text_at(opinion, "none_because") << "\n";
   else if (known_until < end * (1.0 - 1e-6))
-    out << "agrees up to t = " << quantity_text(known_until, "s") << " and cannot tell from there on\n";
+    out << "agrees up to t = " << quantity_text(known_until, "s") << " and cannot be compared from there on\n";
   else out << "agrees; the worst difference is " << small_text(number_at(opinion, "worst_ratio")) << " of what both errors allow\n";
 }
 

@@ -281,7 +281,7 @@ as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends
       {"--step", &o->step, "H", "step of a fixed-step integrator, s"},
       {"--integrator", &o->integrator, "NAME", "integration method; see steplap elements simulation"},
       {"--tolerance", &o->tolerance, "TOL",
-       "relative tolerance of an adaptive integrator, for each step; the estimated error tells what "
+       "relative tolerance of an adaptive integrator, for each step; the estimated error shows what "
        "it comes to"},
       {"--estimate-error", &o->is_error_estimated, "",
        "estimate the error of all numbers, from runs at a finer tolerance or step, however long they take; without "

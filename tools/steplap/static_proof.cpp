@@ -126,7 +126,7 @@ void print_weakest(std::ostream& out, const StaticProof& proof) {
   const auto open = std::count_if(proof.polar.begin(), proof.polar.end(), [](const StaticDirection& d) { return !d.is_unique; });
   if (open > 0)
     out << "  In " << counted(static_cast<std::size_t>(open), "direction", "directions") << " of " << proof.polar.size()
-        << " the first limit hangs on what came before.\n";
+        << " the first limit depends on the history.\n";
 }
 
 void print_proof(std::ostream& out, const StaticProof& proof) {

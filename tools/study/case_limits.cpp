@@ -95,7 +95,7 @@ void add_limits_of_cases(LoadedStudy& loaded) {
     for (std::size_t j = 0; j < i; ++j)
       if (models[i]->name == models[j]->name)
         problems.push_back({models[i]->load ? models[i]->load->where : loaded.study.where,
-                            "two load cases are called '" + models[i]->name + "': their results could not be told apart"});
+                            "two load cases are called '" + models[i]->name + "': their results could not be distinguished"});
   if (!problems.empty()) throw ModelError(std::move(problems));
   loaded.models = std::move(models);
   for (const SharedStudyModel& model : loaded.models) add_limits_of(*model, loaded.study);

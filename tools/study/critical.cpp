@@ -83,7 +83,7 @@ std::string monotonic_text(const LineSamples& line_samples) {
     falls = falls || line_samples.g[i] < line_samples.g[i - 1];
   }
   if (!is_known) return "may be monotonic or not: some runs gave no value";
-  if (rises && falls) return "is not monotonic over the range: all crossings that the looks tell apart are given";
+  if (rises && falls) return "is not monotonic over the range: all crossings that the points resolve are given";
   return rises ? "rises all over the range" : falls ? "falls all over the range" : "is constant over the range";
 }
 
@@ -116,11 +116,11 @@ std::vector<Crossing> crossings_of(const LineSamples& line_samples, const std::s
 }
 
 // Adds a note if the points are hardly denser than the crossings: pairs of crossings between two points may then be missed.
-void say_if_dense(std::size_t crossings, long points, Answer& answer) {
-  constexpr long k_looks = 3; // required points per crossing
-  if (crossings < 3 || k_looks * static_cast<long>(crossings) < points) return;
+void note_if_too_few_points(std::size_t crossings, long points, Answer& answer) {
+  constexpr long k_points_per_crossing = 3; // required points per crossing
+  if (crossings < 3 || k_points_per_crossing * static_cast<long>(crossings) < points) return;
   answer.notes.push_back(std::to_string(crossings) + " crossings among " + std::to_string(points) +
-                         " looks: there may be more between them; look in more places (points)");
+                         " points: there may be more between them; raise 'points'");
   answer.degrade(Standing::not_met);
 }
 
@@ -152,7 +152,7 @@ Answer run_critical(StudyRun& run) {
 
   Answer answer;
   std::vector<Crossing> crossings = crossings_of(line_samples, s.variable, run.evaluator.asked(), answer);
-  say_if_dense(crossings.size(), s.points, answer);
+  note_if_too_few_points(crossings.size(), s.points, answer);
   close_crossings(crossings, s.tolerance * width,
                   [&](const std::vector<std::size_t>&, const std::vector<double>& at) { return line.at(at); });
 
@@ -183,7 +183,7 @@ Answer run_critical(StudyRun& run) {
   answer.notes.emplace_back(text);
   if (line.bad() > 0) {
     answer.notes.push_back(std::to_string(line.bad()) +
-                           " runs did not reach their end or are not to be trusted: crossings beside them are not seen");
+                           " runs did not reach their end or are not to be trusted: crossings next to them are not found");
     answer.degrade(Standing::not_met);
   }
   return answer;

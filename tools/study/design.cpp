@@ -207,7 +207,7 @@ private:
 
   [[nodiscard]] bool is_list() const { return !variable_.values.empty(); }
 
-  // Keeps a margin away from zero, which holds, so that its sign says whether the value holds.
+  // Moves a margin away from zero, which counts as holding, so that its sign shows whether the value holds.
   static double signed_margin(const DesignValue& value) {
     constexpr double k_least = 1e-12;
     if (!value.doubt.empty()) return std::min(std::isnan(value.margin) ? -1.0 : value.margin, -k_least);
@@ -218,7 +218,7 @@ private:
     if (target_)
       for (const double x : xs) known_[x] = index_at(x);
     else run_at(xs);
-    // Where nothing is known the margin is that of a limit that is exceeded twice, so that a search does not take it for a border.
+    // An unknown margin is replaced by that of a limit exceeded twice, so that the search does not take it for a border.
     constexpr double k_unknown = -1.0, k_least = 1e-6;
     std::vector<double> margins;
     for (const double x : xs) {
@@ -270,7 +270,8 @@ private:
     for (HoldingInterval& interval : intervals)
       for (HoldingEnd* end : {&interval.from, &interval.to}) {
         if (end->is_range_end) continue;
-        if (const std::string& doubt = known_.at(end->beyond).doubt; !doubt.empty()) continue; // beyond is unknown: there is no border
+        if (const std::string& doubt = known_.at(end->beyond).doubt; !doubt.empty())
+          continue; // the neighbouring value is unknown, so this is no border
         report("form", "border of first order", end->value);
         const TargetBorder border = search_.border_near(end->value, variable_.range[0], variable_.range[1]);
         report("importance_sampling", "checked at", border.checked_at);

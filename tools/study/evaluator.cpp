@@ -104,7 +104,7 @@ void Evaluator::fetch(std::size_t from, std::size_t count, const std::vector<dou
         if (!may_go_another_way(store))
           throw StoreError(store.path(),
                            "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
-                               " has other values than the study asks for: let it make the store anew",
+                               " has other values than the study: let it create the store again",
                            {StoreMode::restart});
         store.forget_from(fetched_[i].number);
         stored_ = store.size();
@@ -113,7 +113,7 @@ void Evaluator::fetch(std::size_t from, std::size_t count, const std::vector<dou
     if (!workers_->is_derived(fetched_[i]))
       throw StoreError(store.path(),
                        "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
-                           " has numbers that do not follow from its values and responses: let the study make the store anew",
+                           " has numbers that do not follow from its values and responses: let the study create the store again",
                        {StoreMode::restart});
     rows_[from + i] = std::move(fetched_[i]);
     ++pace_.stored;

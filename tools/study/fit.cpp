@@ -246,7 +246,7 @@ private:
       Finding f = finding(name, "value", fit_.value(i, best_.at[i]));
       Finding d = finding(name, "standard deviation", fit_.width(i) * deviation(i));
       if (is_untold(i)) {
-        f.status = d.status = "the record does not tell it: see 'not told'";
+        f.status = d.status = "the record does not determine it: see 'not determined'";
         d.value = std::nan("");
         answer_.degrade(Standing::not_met);
       } else {
@@ -271,7 +271,7 @@ private:
         if (is_untold(i) || is_untold(j)) continue;
         Finding f = finding(fit_.variable(i).name + ", " + fit_.variable(j).name, "correlation",
                             told_.covariance(i, j) / (deviation(i) * deviation(j)));
-        if (std::abs(f.value) > k_high) f.status = "hardly told apart: a change of one is nearly made up for by the other";
+        if (std::abs(f.value) > k_high) f.status = "strongly correlated: a change of one is nearly compensated by the other";
         answer_.findings.push_back(f);
       }
   }
@@ -294,9 +294,9 @@ private:
         changes += (changes.empty() ? "" : " and ") + v.name + " changes by " + in_words("%+.4g", way[i] * fit_.width(i)) +
                    (v.unit.empty() || v.unit == "*" ? "" : " " + v.unit);
       }
-      Finding f = finding(names, "not told", seen);
-      f.status = names.find(',') == std::string::npos ? "the record does not hang on it"
-                                                      : "cannot be told apart: the record stays as it is where " + changes;
+      Finding f = finding(names, "not determined", seen);
+      f.status = names.find(',') == std::string::npos ? "the record does not depend on it"
+                                                      : "cannot be distinguished: the record does not change where " + changes;
       answer_.findings.push_back(f);
       answer_.degrade(Standing::not_met);
     }
@@ -317,7 +317,7 @@ private:
       const double share = h.noise ? products / n : together;
       const bool is_exact = sum <= 10.0 * fit_.problem().floor;
       if (count > 20 && !is_exact && share * std::sqrt(n) > k_sure)
-        f.status = in_words("residuals hang together (correlation %.2f from one to the next): the model does not "
+        f.status = in_words("residuals are correlated (%.2f from one to the next): the model does not "
                             "describe the record to its noise, "
                             "and the intervals are too narrow",
                             together);
@@ -407,7 +407,7 @@ void check_fit(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
     problems.push_back({study.where, "a study of the kind 'fit' needs a [[variable]] with a range"});
   const auto noisy = std::count_if(study.histories.begin(), study.histories.end(), [](const History& h) { return h.noise.has_value(); });
   if (study.histories.size() > 1 && noisy != static_cast<long>(study.histories.size()))
-    problems.push_back({study.histories.back().where, "several histories need 'noise' each: it says what they weigh"});
+    problems.push_back({study.histories.back().where, "several histories need 'noise' each, which determines their weights"});
   if (!study.histories.empty() && static_cast<long>(loaded.curve_size()) <= fitted)
     problems.push_back({study.histories.front().where, std::to_string(loaded.curve_size()) + " measured values are too few for " +
                                                            std::to_string(fitted) + " parameters"});
@@ -445,7 +445,7 @@ StudyKind fit_kind() {
                 {"sum of squares", "sum of squares"},         // of residuals divided by their noise
                 {"correlation", "correlation", UnitOf::none, 3},
                 {"condition", "condition", UnitOf::none, 3},
-                {"not told", "not told", UnitOf::none, 3},
+                {"not determined", "not determined", UnitOf::none, 3},
                 {"another fit", "another fit", UnitOf::none, 3}};
   kind.check = check_fit;
   kind.run = run_fit;

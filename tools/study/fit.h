@@ -1,4 +1,4 @@
-// Study kind "fit": identifies parameters from measured histories by least squares, and tells which parameters the records determine.
+// Study kind "fit": identifies parameters from measured histories by least squares, and finds out which parameters the records determine.
 #pragma once
 
 #include "tools/study/study_kind.h"

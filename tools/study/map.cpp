@@ -212,7 +212,7 @@ public:
     border.points = {seed};
     const std::optional<Point> tangent = tangent_at(seed);
     if (!tangent) {
-      border.end = "no direction was found in which it goes on";
+      border.end = "no direction was found in which it continues";
       return border;
     }
     if (go(border, *tangent)) return border;
@@ -224,17 +224,17 @@ public:
 private:
   static constexpr int k_halvings = 6;
 
-  // Finds a second crossing on a small circle around p, evaluated at 16 points. Points outside the ranges are moved to their bounds, where
-  // two of them may enclose p itself; such a crossing is used only if there is no other.
+  // Finds a second crossing on a small circle around p, evaluated at 16 points. Points outside the ranges are moved to their bounds, so two
+  // of them may lie on both sides of p itself; such a crossing is used only if there is no other.
   std::optional<Point> tangent_at(const Point& p) {
-    constexpr int k_looks = 16;
+    constexpr int k_circle_points = 16;
     const double radius = 0.1 * step_;
     std::vector<Point> circle;
-    std::array<bool, k_looks> is_drawn_back{};
-    for (int k = 0; k < k_looks; ++k) {
-      const double angle = 2.0 * std::acos(-1.0) * (k + 0.5) / k_looks;
+    std::array<bool, k_circle_points> is_moved_to_bound{};
+    for (int k = 0; k < k_circle_points; ++k) {
+      const double angle = 2.0 * std::acos(-1.0) * (k + 0.5) / k_circle_points;
       Point q = along(p, {std::cos(angle), std::sin(angle)}, radius);
-      is_drawn_back[static_cast<std::size_t>(k)] = !is_inside(q);
+      is_moved_to_bound[static_cast<std::size_t>(k)] = !is_inside(q);
       for (double& x : q) x = std::clamp(x, 0.0, 1.0);
       circle.push_back(q);
     }
@@ -248,7 +248,7 @@ private:
       const double length = distance(p, q);
       if (!(length > 0.0)) continue;
       const Point tangent{(q[0] - p[0]) / length, (q[1] - p[1]) / length};
-      if (!is_drawn_back[k] && !is_drawn_back[next]) return tangent;
+      if (!is_moved_to_bound[k] && !is_moved_to_bound[next]) return tangent;
       if (!second_best) second_best = tangent;
     }
     return second_best;
@@ -358,7 +358,7 @@ void report_unseen(const Grid& grid, const Plane& plane, const StudyRun& run, An
   const double radius = grid.width() / std::sqrt(2.0);
   Finding f{"map", "island", "unseen radius, of the ranges", radius};
   f.samples = run.evaluator.asked();
-  if (plane.bad() > 0) f.status = "larger beside runs without a result";
+  if (plane.bad() > 0) f.status = "larger next to runs without a result";
   answer.findings.push_back(f);
   char text[240];
   std::snprintf(text, sizeof text,
@@ -419,7 +419,7 @@ Answer run_map(StudyRun& run) {
   if (plane.has_jump()) answer.notes.push_back("In places the expression jumps past zero: the border is then where it jumps.");
   if (plane.bad() > 0)
     answer.notes.push_back(std::to_string(plane.bad()) +
-                           " runs did not reach their end or are not to be trusted: borders beside them are not seen");
+                           " runs did not reach their end or are not to be trusted: borders next to them are not found");
   return answer;
 }
 

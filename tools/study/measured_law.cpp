@@ -119,7 +119,7 @@ double share_within(const Variable& v, const OT::Distribution& whole) {
 // Fits a distribution by maximum likelihood to values that were truncated at the bounds.
 OT::Distribution fitted_within(const Variable& v, const std::vector<double>& values, const OT::Sample& sample) {
   if (v.distribution == "uniform" || v.distribution == "triangular" || v.distribution == "beta")
-    complain(v, "a " + v.distribution + " distribution fitted to 'measured' has ends of its own: leave out 'lower' and 'upper'");
+    complain(v, "a " + v.distribution + " distribution fitted to 'measured' has its own ends: leave out 'lower' and 'upper'");
   const bool is_positive = v.distribution != "normal" && v.distribution != "gumbel";
   if (is_positive && *std::min_element(values.begin(), values.end()) <= 0.0)
     complain(v, "a truncated " + v.distribution + " distribution is fitted to values above zero only, and '" + v.measured + "' has others");

@@ -172,8 +172,7 @@ Answer run_needs(StudyRun& run) {
     answer.findings.push_back(f);
   }
   char text[160];
-  std::snprintf(text, sizeof text,
-                "%ld of %zu simplifications change no response by more than %g of its value, each by itself; together they may.",
+  std::snprintf(text, sizeof text, "%ld of %zu simplifications change no response by more than %g of its value alone; together they may.",
                 dispensable, rows.size(), settings_of<NeedsSettings>(run.study()).accuracy);
   answer.notes.emplace_back(text);
   return answer;

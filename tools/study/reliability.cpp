@@ -254,8 +254,8 @@ private:
     return std::any_of(estimates_.begin(), estimates_.end(), [](const Estimate& e) { return e.is_trusted && std::isfinite(e.cov); });
   }
 
-  // Reports two sampling methods with disjoint intervals: one of them has missed a failure region. Both bounds are compared separately,
-  // because the difference between them, due to runs without a result, would hide it.
+  // Reports two sampling methods with disjoint intervals: one has missed a failure region. Both bounds are compared separately, because the
+  // difference between them, due to runs without a result, would hide it.
   void compare_estimates() {
     for (std::size_t i = 0; i < estimates_.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {

@@ -34,7 +34,7 @@ Answer answer_of(const LoadedStudy& loaded, Store& store, const Ranks& ranks, co
     if (options.progress) options.progress(pace);
     if (!options.stop) return;
     if (const std::string why = options.stop(); !why.empty())
-      throw StudyStopped(why + " after " + std::to_string(pace.samples) + " samples; run again, the study goes on from there");
+      throw StudyStopped(why + " after " + std::to_string(pace.samples) + " samples; repeat the command to continue");
   });
   StudyRun run{loaded, law, evaluator};
   Answer answer = kind_of(loaded.study).run(run);

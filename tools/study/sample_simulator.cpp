@@ -21,11 +21,11 @@ namespace steplap::study {
 
 /// Ends of a channel's range that a response needs. `low_below`: if `low` is not requested, only lows below this value matter. If a
 /// response uses several channels, only the outermost extreme matters; the channels then compete ("race").
-struct AskedEnds {
+struct RequestedExtremes {
   bool low = false, high = false;
   double low_below = -std::numeric_limits<double>::infinity();
   std::vector<std::size_t> low_races, high_races; ///< indices in the runner's count
-  void add(const AskedEnds& more) {
+  void add(const RequestedExtremes& more) {
     low = low || more.low;
     high = high || more.high;
     low_below = std::max(low_below, more.low_below);
@@ -117,9 +117,9 @@ using RunningExtremesList = std::vector<std::shared_ptr<RunningExtremes>>; // ch
 
 // Bounds of expensive channels. They exclude extremes that are not needed: for a channel in a race, values that another channel has already
 // exceeded, even if the channel continues to change at its last rate.
-class AskedBounds {
+class RequestedBounds {
 public:
-  AskedBounds(std::function<ValueBounds(const Snapshot&)> bounds, const AskedEnds& ends, const RunningExtremesList& races)
+  RequestedBounds(std::function<ValueBounds(const Snapshot&)> bounds, const RequestedExtremes& ends, const RunningExtremesList& races)
       : bounds_(std::move(bounds)), ends_(ends) {
     for (const std::size_t race : ends.low_races) low_races_.push_back(races[race]);
     for (const std::size_t race : ends.high_races) high_races_.push_back(races[race]);
@@ -147,14 +147,14 @@ private:
   }
 
   std::function<ValueBounds(const Snapshot&)> bounds_;
-  AskedEnds ends_;
+  RequestedExtremes ends_;
   RunningExtremesList low_races_, high_races_;
   ValueBounds last_, reach_;
   double t_ = -std::numeric_limits<double>::infinity();
 };
 
-void leave_out_others(Channel& channel, const AskedEnds& ends, const RunningExtremesList& races) {
-  if (channel.bounds && !(ends.high && ends.low)) channel.bounds = AskedBounds(std::move(channel.bounds), ends, races);
+void leave_out_others(Channel& channel, const RequestedExtremes& ends, const RunningExtremesList& races) {
+  if (channel.bounds && !(ends.high && ends.low)) channel.bounds = RequestedBounds(std::move(channel.bounds), ends, races);
   const auto note = [&](const std::vector<std::size_t>& of, const auto& noted) {
     for (const std::size_t race : of)
       channel.value = [value = std::move(channel.value), noted, own = races[race]](const Snapshot& s) { return noted(*own, value(s)); };
@@ -164,8 +164,8 @@ void leave_out_others(Channel& channel, const AskedEnds& ends, const RunningExtr
 }
 
 // Returns the extremes that decide whether a run can be trusted.
-AskedEnds ends_of_trust(const TrustChannel& channel) {
-  AskedEnds ends;
+RequestedExtremes ends_of_trust(const TrustChannel& channel) {
+  RequestedExtremes ends;
   if (channel.is_margin) ends.low_below = 1.0;
   else ends.low = ends.high = true;
   return ends;
@@ -205,10 +205,10 @@ struct SampleSimulator::SharedRunData {
     double factor;
   };
   const StudyModel& model;
-  bool is_judged = false;                    ///< a response needs the judgement, for which criteria may use any channel
-  bool needs_closed_verdict = false;         ///< a response has no meaning if the verdict is open
-  std::vector<std::string> channels;         ///< names of the channels
-  std::map<std::string, AskedEnds> extremes; ///< the channels whose extremes are requested
+  bool is_judged = false;                            ///< a response needs the judgement, for which criteria may use any channel
+  bool needs_closed_verdict = false;                 ///< a response has no meaning if the verdict is open
+  std::vector<std::string> channels;                 ///< names of the channels
+  std::map<std::string, RequestedExtremes> extremes; ///< the channels whose extremes are requested
   std::size_t races = 0;
   std::vector<std::string> sampled; ///< patterns
   Sampling sampling;                ///< for histories
@@ -248,7 +248,7 @@ private:
     const bool is_largest = r.measure == Measure::largest_magnitude;
     const bool is_low = r.measure == Measure::lowest, is_high = r.measure == Measure::highest;
     const auto asked = channels_of(r, *model.system);
-    AskedEnds ends;
+    RequestedExtremes ends;
     ends.low = is_largest || (is_low && asked.size() < 2);
     ends.high = is_largest || (is_high && asked.size() < 2);
     if (asked.size() > 1 && is_low) ends.low_races.push_back(races++);
@@ -300,7 +300,7 @@ void SampleSimulator::evaluate_responses(const SharedRunData& runner, const Judg
     outcome.numbers[i] = value_of(r, result, judgement, reserve);
     if (is_extreme(r.measure) && is_singular(r, result.ranges))
       worsen(outcome, SampleStatus::untrusted,
-             "'" + r.name + "' was met beside a singular position of the joints, where reactions may be of any size");
+             "'" + r.name + "' was found near a singular position of the joints, where reactions may be of any size");
   }
   if (!loaded_.study.histories.empty()) compare(runner, result, outcome);
 }

@@ -43,7 +43,7 @@ Estimate monte_carlo(LimitFunction& limit, const SamplingTarget& target) {
   course.say_why_it_ended(e);
   const std::string all = std::to_string(e.samples) + " samples: only a bound is known";
   if (failures == 0.0) e.status = "no failure among " + all;
-  if (failures + bad == total && bad == 0.0) e.status = "nothing but failures among " + all;
+  if (failures + bad == total && bad == 0.0) e.status = "only failures among " + all;
   return e;
 }
 

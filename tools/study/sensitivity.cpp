@@ -61,10 +61,10 @@ Derivative derivative_of(const Quotients& q, double noise) {
   // For a smooth response the one-sided quotients converge to each other in proportion to the step; at a kink they do not.
   const double gap = std::abs(q.right[0] - q.left[0]), closer = std::abs(q.right[2] - q.left[2]);
   const double size = std::max({std::abs(q.left[2]), std::abs(q.right[2]), 1e-300});
-  if (!std::isfinite(d.value)) d.status = "a run beside the point has no result";
+  if (!std::isfinite(d.value)) d.status = "a run next to the point has no result";
   else if (closer > 0.5 * gap && closer > 1e-3 * size && closer > 10.0 * noise)
     d.status = in_words("kink, or jump: to the left %.6g, to the right %.6g; this is no derivative", q.left[2], q.right[2]);
-  else if (d.error > 0.05 * size) d.status = "the steps of difference disagree: its error is of its own size";
+  else if (d.error > 0.05 * size) d.status = "the difference steps disagree: the error is as large as the value";
   return d;
 }
 
@@ -225,7 +225,7 @@ Answer morris(StudyRun& run) {
           {"morris", names[r], "sigma of " + variable, e.deviation(false), std::nan(""), std::nan(""), run.evaluator.asked(), status});
     }
   if (missing) answer.degrade(Standing::not_met);
-  if (missing) answer.notes.push_back(std::to_string(missing) + " effects are not known: runs beside them have no result");
+  if (missing) answer.notes.push_back(std::to_string(missing) + " effects are not known: neighbouring runs have no result");
   return answer;
 }
 

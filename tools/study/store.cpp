@@ -181,14 +181,14 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
   if (identity_.version != identity.version)
     throw StoreError(path,
                      "the store '" + path + "' was made by version " + identity_.version + ", this is " + identity.version +
-                         ": begin it anew, or choose another store",
+                         ": restart it, or choose another store",
                      {StoreMode::restart});
   if (identity_.scene != identity.scene || identity_.variables != identity.variables || identity_.numbers != identity.numbers)
     throw StoreError(path,
                      "the store '" + path +
                          "' is of another study: its models, variables, responses or limit states are not those of the "
                          "study file any more" +
-                         changed_files(identity) + ". Begin it anew, which drops its " + std::to_string(size_) +
+                         changed_files(identity) + ". Restart it, which drops its " + std::to_string(size_) +
                          " samples, or choose another store",
                      {StoreMode::restart});
   if (identity_.study != identity.study || identity_.kind != identity.kind) {
@@ -196,7 +196,7 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
       throw StoreError(path,
                        "the study has changed since the store '" + path + "' was made" + changed_files(identity) +
                            ": go on with those of its " + std::to_string(size_) +
-                           " samples that are the same, begin it anew, or choose another store",
+                           " samples that are the same, restart it, or choose another store",
                        {StoreMode::changed, StoreMode::restart});
     set("study", identity.study);
     set("kind", identity.kind);

@@ -59,7 +59,7 @@ long Store::fingerprint_of(long place, const CurvePoint& p) {
 
 void Store::damaged(const std::string& why) const {
   throw StoreError(path_,
-                   "the store '" + path_ + "' is damaged, or was edited: " + why + ". Take a copy of it, or let the study make it anew",
+                   "the store '" + path_ + "' is damaged, or was edited: " + why + ". Use a copy of it, or let the study create it again",
                    {StoreMode::restart});
 }
 

@@ -56,7 +56,7 @@ enum class Measure : std::uint8_t {
   event_count,       ///< number of events
   first_event,       ///< time of the first event, s
   verdict,           ///< 0 hold, 1 open, 2 inspect, 3 reject
-  reserve            ///< what is left of all limits (run/utilisation.h); negative unless the verdict is "hold"
+  reserve            ///< remaining reserve of all limits (mbd/run/utilisation.h); negative unless the verdict is "hold"
 };
 
 /// Returns true for extremes of channels.

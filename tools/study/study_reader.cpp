@@ -548,8 +548,8 @@ std::shared_ptr<StudyModel> read_study_model(const std::string& path, const std:
 LoadedStudy read_study(const std::string& path) {
   std::error_code ignored;
   if (is_standard_input(path))
-    throw ModelError(Location{shown_input(path), 0, 0},
-                     "cannot read the study: studies are read more than once, and their models stand beside them. Give a file");
+    throw ModelError(Location{shown_input(path), 0, 0}, "cannot read the study from the standard input: studies are read more than once, "
+                                                        "and paths of models are relative to their file. Give a file");
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
     throw ModelError(Location{path, 0, 0},
                      "cannot read the study: it is no file. Studies are read more than once, so pipes cannot be taken");

@@ -74,7 +74,7 @@ IndexEstimate TargetSearch::sampled(double x) {
 }
 
 TargetBorder TargetSearch::border_near(double x, double low, double high) {
-  constexpr double k_near = 0.05; // in β: over so short a way β(x) is straight to far less than the interval of the sampling
+  constexpr double k_near = 0.05; // in β: over so short a distance the curvature of β(x) is negligible compared with the sampling interval
   constexpr int k_most = 6;
   const double h = 0.005 * (high - low);
   const double before = std::max(low, x - h), after = std::min(high, x + h);

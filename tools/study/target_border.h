@@ -2,7 +2,7 @@
 //
 // The design variable is the mean of a random variable whose coefficient of variation or standard deviation stays, or a number that is not
 // random. First order reliability (FORM) gives the index β(x) at any x; its border x₀ with β(x₀) = β_t starts the search (inverse FORM). With
-// the slope β' there, importance sampling at x corrects it: x ← x + (β_t − β_IS(x))/β'. Each sampling uses random numbers of its own, so that
+// the slope β' there, importance sampling at x corrects it: x ← x + (β_t − β_IS(x))/β'. Each sampling uses separate random numbers, so that
 // the last one, made when x has settled, is independent of the choice of x. Its confidence interval divided by the slope is that of the
 // border.
 #pragma once

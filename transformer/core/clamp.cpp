@@ -104,7 +104,7 @@ void check(const Clamp& clamp, const Model& model) {
     wrong(clamp, "warming", "needs 'expansion' of the clamp; steel has 12e-6 1/K, glass fibre along it some 6e-6 1/K");
   if (std::abs(clamp.warming) > k_most_warming)
     wrong(clamp, "warming",
-          "is what the core has become warmer by since it was clamped, in K: " + rounded_text(clamp.warming) +
+          "is the warming of the core since it was clamped, in K: " + rounded_text(clamp.warming) +
               " K look like a temperature and not like a difference");
 }
 
@@ -188,10 +188,8 @@ const TableKind& clamp_kind() {
     f.add("relaxation", &T::relaxation).not_negative().at_most(0.99).doc("share of the preload that is lost since");
     f.add("stiffness", &T::stiffness).in("N/m").positive().doc("of a clamp along its force: E A/l of a bolt");
     f.add("stack_stiffness", &T::stack_stiffness).in("N/m").positive().doc("of the stack under a clamp, across the sheets");
-    f.add("settling", &T::settling).in("m").not_negative().doc("by which the stack has become thinner since; needs both stiffnesses");
-    f.add("warming", &T::warming)
-        .in("K")
-        .doc("by which the core has become warmer since, a difference; needs both stiffnesses and 'expansion'");
+    f.add("settling", &T::settling).in("m").not_negative().doc("reduction of the stack's thickness since clamping; needs both stiffnesses");
+    f.add("warming", &T::warming).in("K").doc("temperature difference since clamping; needs both stiffnesses and 'expansion'");
     f.add("expansion", &T::expansion).in("1/K").not_negative().doc("thermal, of the clamp");
     f.add("stack_expansion", &T::stack_expansion).in("1/K").not_negative().doc("thermal, of the stack across the sheets");
     f.add("length", &T::length).in("m").positive().doc("that is clamped; default: the depth of the stack");

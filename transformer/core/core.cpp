@@ -142,7 +142,7 @@ void add_joints(FieldTable& f) {
   f.add("transverse_slices", &T::transverse_slices)
       .at_least(1)
       .at_most(100)
-      .doc("of each packet, every one with a pressure of its own; default: 1, right until a packet has lost all its pressure");
+      .doc("of each packet with its own pressure; default: 1, correct until a packet has lost all its pressure");
   f.add("tangential_stiffness", &T::tangential_stiffness)
       .in("N/m")
       .positive()
@@ -159,7 +159,7 @@ void add_joints(FieldTable& f) {
   f.add("allowed_line_load", &T::allowed_line_load)
       .in("N/m")
       .positive()
-      .doc("of all sheets at a corner, along the mitre: a joint is rejected whose edges bear more");
+      .doc("of all sheets at a corner, along the mitre: a joint whose edges carry more is rejected");
   f.add("mode", &T::mode).one_of({"slip", "monitor"}).doc("of the joints added, see step_lap_joint");
   f.add("on_apart", &T::on_apart).one_of({"stop", "continue"}).doc("of the joints added, see step_lap_joint");
   f.add("least_margin", &T::least_margin).at_least(1.0).doc("of the joints added, see step_lap_joint");

@@ -227,7 +227,7 @@ void CoreBuilder::check_packets(std::size_t i, const CoreCorner& corner, const C
   }
 }
 
-// Determines the packets held by the interfaces of a joint. If there are several, each must be held by itself. For a limb described by
+// Determines the packets held by the interfaces of a joint. If there are several, each must be held separately. For a limb described by
 // several tables, the fractions of its total steel are unknown here.
 void CoreBuilder::find_parts(std::size_t i, const CoreGeometry& geometry) {
   part_shares_.clear();

@@ -80,7 +80,7 @@ private:
 void DimensionCheck::check_section() {
   if (core_.packets.empty()) {
     need(core_.limb_width.has_value(), "limb_width", "width of a limb's sheets; in m; or 'packets' for a stepped section");
-    need(core_.yoke_height.has_value(), "yoke_height", "height of a yoke's sheets; in m; or 'yoke_heights' besides 'packets'");
+    need(core_.yoke_height.has_value(), "yoke_height", "height of a yoke's sheets; in m; or 'yoke_heights' in addition to 'packets'");
     if (!core_.yoke_heights.empty()) error("'yoke_heights' is for 'packets', and none are given", "yoke_heights");
     if (!core_.pressure_shares.empty()) error("'pressure_shares' is for 'packets', and none are given", "pressure_shares");
   } else {
@@ -117,7 +117,7 @@ void DimensionCheck::check_friction() {
   if (core_.bottom_kinetic_friction.value_or(0.0) > bottom_static)
     error("'bottom_kinetic_friction' must not exceed the static friction there, " + number_text(bottom_static), "bottom_kinetic_friction");
   if (core_.kinetic_friction && core_.bottom_static_friction && !core_.bottom_kinetic_friction)
-    error("needs 'bottom_kinetic_friction' besides 'bottom_static_friction'", "bottom_static_friction");
+    error("needs 'bottom_kinetic_friction' in addition to 'bottom_static_friction'", "bottom_static_friction");
 }
 
 void DimensionCheck::check_pressure() {
@@ -158,9 +158,9 @@ void DimensionCheck::check_elastic() {
           "'contact_stiffness'",
           "shear_modulus");
   if (core_.allowed_line_load && !core_.edge_stiffness)
-    error("'allowed_line_load' needs 'edge_stiffness': without it no edge bears", "allowed_line_load");
+    error("'allowed_line_load' needs 'edge_stiffness': without it edges carry no load", "allowed_line_load");
   if (core_.edge_stiffness && !core_.clearance)
-    error("'edge_stiffness' needs 'clearance', which has to close before edges bear", "edge_stiffness");
+    error("'edge_stiffness' needs 'clearance', which has to close before edges carry load", "edge_stiffness");
   if (!core_.is_elastic()) return;
   const std::string stiffness = core_.tangential_stiffness ? "tangential_stiffness" : "contact_stiffness";
   if (core_.mode == "monitor")
@@ -209,7 +209,7 @@ void DimensionCheck::check_stack() {
   need(core_.stacking_factor.has_value(), "stacking_factor", "steel's share of the stack; usual are 0.91 to 0.98");
   need(core_.sheet_thickness.has_value(), "sheet_thickness", "of the steel; in m; usual are 0.18 to 0.35 mm");
   need(core_.sheets_per_layer.has_value(), "sheets_per_layer",
-       "equal sheets one on the other: 1 or 2; it has no default, since 2 halve what the joint bears");
+       "equal sheets laid at once: 1 or 2; it has no default, since 2 halve the capacity of the joint");
   need(core_.steps.has_value(), "steps", "layers from one end of a book to the other; usual are 3 to 7");
   need(core_.step_pitch.has_value(), "step_pitch", "from layer to layer; in m");
   need(!core_.pitch_direction.empty(), "pitch_direction",

@@ -40,7 +40,7 @@ void compute_overlap(Lap& lap) {
 }
 
 /// A cached lap.
-struct KnownLap {
+struct CachedLap {
   Polygon yoke, limb;
   double area = 0.0;
   Vec2 middle = Vec2::Zero();
@@ -51,7 +51,7 @@ struct KnownLap {
 
 void find_overlap(Lap& lap) {
   constexpr std::size_t k_most = 4096; // a core with thirty packets has some hundreds
-  static thread_local std::unordered_map<std::uint64_t, KnownLap> all_known;
+  static thread_local std::unordered_map<std::uint64_t, CachedLap> all_known;
   if (lap.yoke.outer.size() < 3 || lap.limb.outer.size() < 3) return;
   Fingerprint print;
   add_polygon(print, lap.yoke);
@@ -65,7 +65,7 @@ void find_overlap(Lap& lap) {
   }
   compute_overlap(lap);
   if (all_known.size() >= k_most) all_known.clear();
-  all_known.insert_or_assign(print.value(), KnownLap{lap.yoke, lap.limb, lap.area, lap.middle, lap.overlap});
+  all_known.insert_or_assign(print.value(), CachedLap{lap.yoke, lap.limb, lap.area, lap.middle, lap.overlap});
 }
 
 } // namespace steplap

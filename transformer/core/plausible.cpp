@@ -111,7 +111,7 @@ private:
                              " m wide is unusual: sections are about as deep as wide, 0.4 to 1.8 of it (" + k_assumed + ")");
   }
 
-  // A mitre from corner to corner has an angle that nobody has chosen.
+  // The angle of a mitre from corner to corner follows from the dimensions; reports it if it is not the angle that workshops cut.
   void note_mitre() {
     if (core_.mitre_angle || core_.limbs.empty()) return;
     const CoreGeometry geometry(core_);
@@ -195,10 +195,10 @@ const std::vector<UsualRange>& usual_ranges() {
       {"shear_modulus", 60e9, 130e9, "60 to 130 GPa", "crystals of iron with 3 % silicon, by direction"},
       {"edge_stiffness", 1e8, 6e12, "1e8 to 6e12 N/m²", "assumed; at most that of sheets in compression, E h/(b/2)"},
       {"allowed_line_load", 1e5, 4.5e8, "1e5 to 4.5e8 N/m", "assumed; at most yield, 300 MPa times the steel's thickness"},
-      {"static_friction", 0.1, 0.3, "0.1 to 0.3", "assumed: of coated sheets nobody has published any"},
-      {"kinetic_friction", 0.07, 0.3, "0.07 to 0.3", "assumed: of coated sheets nobody has published any"},
-      {"bottom_static_friction", 0.1, 0.3, "0.1 to 0.3", "assumed: of coated sheets nobody has published any"},
-      {"bottom_kinetic_friction", 0.07, 0.3, "0.07 to 0.3", "assumed: of coated sheets nobody has published any"},
+      {"static_friction", 0.1, 0.3, "0.1 to 0.3", "assumed: no value for coated sheets is published"},
+      {"kinetic_friction", 0.07, 0.3, "0.07 to 0.3", "assumed: no value for coated sheets is published"},
+      {"bottom_static_friction", 0.1, 0.3, "0.1 to 0.3", "assumed: no value for coated sheets is published"},
+      {"bottom_kinetic_friction", 0.07, 0.3, "0.07 to 0.3", "assumed: no value for coated sheets is published"},
   };
   return ranges;
 }

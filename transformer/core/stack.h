@@ -1,6 +1,6 @@
 // Stack of a core's sheets, packet after packet: numbers of layers of each shape, and of pairs of neighbouring layers.
 //
-// Packets are listed from the front face to the back; each begins a book of its own. A packet of depth D with stacking factor f (fraction
+// Packets are listed from the front face to the back; each begins its own book. A packet of depth D with stacking factor f (fraction
 // of steel) and sheet thickness d has ⌊f D/d⌋ sheets. Its last layer may have fewer sheets than the others, and its last book fewer layers;
 // both are counted exactly. An oil duct separates two sheets; its position, measured from the front face without ducts, determines which.
 // Where packets meet, the last layer of one is next to the first layer of the next.

@@ -60,7 +60,7 @@ FieldTable criterion_fields() {
   t.add("at_most", &T::at_most_text).as(FieldType::quantity).doc("largest value");
   t.add("at_least", &T::at_least_text).as(FieldType::quantity).doc("smallest value");
   t.add("outcome", &T::outcome).one_of({"inspect", "return"}).doc("if it is not met");
-  t.add("text", &T::text).doc("why it is asked");
+  t.add("text", &T::text).doc("reason of the criterion");
   t.add("source", &T::source).doc("where it comes from");
   t.add("tests", &T::tests).doc("physical tests that would show the damage");
   return t;
@@ -79,8 +79,8 @@ public:
     read_checked_table(document_.root, header_fields(), &criteria_, reading, problems_);
     const Node* const array = document_.root.find("criterion");
     if (!array || !array->is_array_of_tables())
-      problems_.push_back({array ? array->where_key() : Location{criteria_.file, 1, 1},
-                           "the criteria need a table [[criterion]] for each thing that is asked"});
+      problems_.push_back(
+          {array ? array->where_key() : Location{criteria_.file, 1, 1}, "the criteria need a table [[criterion]] for each requirement"});
     else
       for (const Node& entry : array->children) read_criterion(entry);
     if (!problems_.empty()) throw ModelError(problems_);

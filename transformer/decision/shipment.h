@@ -1,4 +1,4 @@
-// Papers of a transport: a TOML file by the user with what is printed on the sheet that is signed. All of it is optional.
+// Papers of a transport: a TOML file by the user with entries that are printed on the sheet to be signed. All of it is optional.
 //
 //   transformer = "serial number"  departure = "2016-01-04 10:00"  arrival = "2016-01-06 18:00"
 //   [[recorder]]

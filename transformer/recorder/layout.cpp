@@ -107,19 +107,19 @@ std::string unit_of_column(const TableShape& shape, std::size_t column, std::str
 }
 
 // Interprets ";Accel, 225, 1000, 16, g": rate, counts per unit, range, unit.
-struct SaidScale {
+struct StatedScale {
   double counts_per_unit = 0.0;
   AccelerationUnit unit;
   double range = 0.0;
   std::size_t line = 0;
 };
-std::optional<SaidScale> scale_of(const Metadata& metadata) {
+std::optional<StatedScale> scale_of(const Metadata& metadata) {
   const auto* said = metadata.find({"accel"});
   if (!said || said->values.size() < 4) return std::nullopt;
   const auto counts = parse_number(said->values[1], '.'), range = parse_number(said->values[2], '.');
   const auto unit = acceleration_unit(said->values[3]);
   if (!counts || !unit || unit->is_counts || !(*counts > 0.0)) return std::nullopt;
-  return SaidScale{*counts, *unit, range.value_or(0.0) * unit->factor, said->line};
+  return StatedScale{*counts, *unit, range.value_or(0.0) * unit->factor, said->line};
 }
 
 void scale_counts(AxisColumn& axis, const RecordLayout& layout, std::size_t line, const Metadata& metadata, const ReadOptions& options) {
@@ -134,29 +134,29 @@ void scale_counts(AxisColumn& axis, const RecordLayout& layout, std::size_t line
   } else {
     throw RecordError(layout.file, line, 1,
                       "The column '" + axis.heading +
-                          "' holds counts, and no line says how many of them are 1 g. Look it up in the recorder's data sheet and give "
+                          "' holds counts, and no line states how many are 1 g. Look it up in the recorder's data sheet and give "
                           "--counts-per-g NUMBER.");
   }
 }
 
 // A unit of all accelerations, said in the lines before the data.
-struct SaidUnit {
+struct StatedUnit {
   std::string text;
   std::size_t line = 0;
 };
 
-// Finds "Units: mG", or ", Units, mG" within a line on a sensor. Lines that contradict each other say nothing.
-std::optional<SaidUnit> unit_of(const Metadata& metadata) {
+// Finds "Units: mG", or ", Units, mG" within a line on a sensor. Contradictory lines are ignored.
+std::optional<StatedUnit> unit_of(const Metadata& metadata) {
   if (const auto* said = metadata.find({"units", "unit", "accelunits", "accelerationunit", "accelerationunits"}))
-    return SaidUnit{said->values.front(), said->line};
-  std::optional<SaidUnit> found;
+    return StatedUnit{said->values.front(), said->line};
+  std::optional<StatedUnit> found;
   for (const auto& [key, value] : metadata.entries)
     for (std::size_t i = 0; i + 1 < value.values.size(); ++i) {
       const std::string word = lower_case(value.values[i]);
       const auto unit = acceleration_unit(value.values[i + 1]);
       if ((word != "units" && word != "unit") || !unit) continue;
       if (found && acceleration_unit(found->text)->name != unit->name) return std::nullopt;
-      found = SaidUnit{value.values[i + 1], value.line};
+      found = StatedUnit{value.values[i + 1], value.line};
     }
   return found;
 }
@@ -242,7 +242,7 @@ void scale_peaks(RecordLayout& layout, const std::vector<HeaderLine>& head, cons
   layout.peaks.factor = axis.factor;
   layout.peaks.unit = axis.unit;
   layout.notes.push_back(
-      "The file holds peaks only, no waveform: how long a shock lasted and what it did to velocity is known only where a column says so.");
+      "The file holds peaks only, no waveform: durations of shocks and changes of velocity are known only if a column states them.");
 }
 
 void find_range_and_holding(RecordLayout& layout, const Metadata& metadata, const ReadOptions& options) {

@@ -134,8 +134,9 @@ private:
     if (may_name && fields_.size() == layout_->shape.width && is_terminated_ && is_text_line()) return take_text_line();
     if (!layout_->shape.split(text, fields_)) {
       if (!is_terminated_) return cut();
-      throw RecordError(layout_->file, line_, 1,
-                        "The fields of this line do not come out: a quote is not closed, or a decimal comma is missing. Correct the line.");
+      throw RecordError(
+          layout_->file, line_, 1,
+          "The fields of this line do not match the columns: a quote is not closed, or a decimal comma is missing. Correct the line.");
     }
     while (fields_.size() > layout_->shape.width && fields_.back().empty()) fields_.pop_back();
     if (is_text_line()) return is_terminated_ ? take_text_line() : cut();

@@ -66,7 +66,7 @@ const TableKind& recorder_kind() {
         .one_of({"none", "line"})
         .doc("of each event: none: as recorded; line: less a constant, so that velocity ends where it began");
     f.add("settle", &T::settle).in("s").not_negative().doc("run on after each event, for the machine to come to rest before the next");
-    f.add("knows_not", &T::knows_not).doc("what the model leaves out, told beside the decision");
+    f.add("knows_not", &T::knows_not).doc("effects that the model omits, listed with the decision");
     k.holds<T>();
     k.reads_masses = k.reads_elements = false;
     k.apply = [](const Element& table, Model& model) { check(static_cast<const Recorder&>(table), model); };

@@ -134,12 +134,12 @@ std::string endaq() {
   return text;
 }
 
-struct Maker {
+struct RecordMaker {
   RecordKind kind;
   std::string (*make)();
 };
-const std::vector<Maker>& makers() {
-  static const std::vector<Maker> list = {
+const std::vector<RecordMaker>& makers() {
+  static const std::vector<RecordMaker> list = {
       {{"gcdc", "Gulf Coast Data Concepts: counts whose scale is not said (2048 are 1 g)"}, gcdc},
       {{"gcdc-epoch", "the same, later models: seconds since 1970, scale in the header, ragged rows"}, gcdc_epoch},
       {{"phone", "phone logger: semicolons, decimal comma, local dates"}, phone},
@@ -158,14 +158,14 @@ const std::vector<Maker>& makers() {
 const std::vector<RecordKind>& record_kinds() {
   static const std::vector<RecordKind> kinds = [] {
     std::vector<RecordKind> list;
-    for (const Maker& maker : makers()) list.push_back(maker.kind);
+    for (const RecordMaker& maker : makers()) list.push_back(maker.kind);
     return list;
   }();
   return kinds;
 }
 
 std::string make_record(const std::string& kind) {
-  for (const Maker& maker : makers())
+  for (const RecordMaker& maker : makers())
     if (maker.kind.name == kind) return maker.make();
   return "";
 }

@@ -85,7 +85,7 @@ private:
       const ColumnHead first = head_of_column(head_, shape_, 0);
       if (has_time_ && !first.texts.empty() && parse_number(first.texts.front(), shape_.decimal))
         throw RecordError(layout_.file, first.lines.front(), first.columns.front(),
-                          "No line says what the first column is. Give --time 1 if it holds times, or --time none.");
+                          "No line states what the first column is. Give --time 1 if it holds times, or --time none.");
     } else {
       const auto time = named(Role::time), date = named(Role::date);
       has_time_ = time || date;
@@ -264,11 +264,11 @@ private:
       base_.rate_text = "the first " + std::to_string(first_.texts.size()) + " times";
       if (said_rate_)
         notes_.push_back("Line " + std::to_string(said_rate_->line) + " says " + rounded_text(said_rate_->hz) + " Hz, but the times say " +
-                         rounded_text(by_times) + " Hz: the times are believed. Give --rate if they are wrong.");
+                         rounded_text(by_times) + " Hz: the times are used. Give --rate if they are wrong.");
     } else {
       throw RecordError(layout_.file, head_[shape_.first_data].number, 1,
-                        layout_.holds ? "Samples are left out of this record, and no line says how often was sampled. Give --rate HZ."
-                                      : "Nothing says how often was sampled: there is no column of times, or its first times do not rise, "
+                        layout_.holds ? "Samples are left out of this record, and no line states the sampling rate. Give --rate HZ."
+                                      : "The sampling rate is unknown: there is no column of times, or its first times do not rise, "
                                         "and no line gives a rate. Give --rate HZ, or --time COLUMN.");
     }
     if (!(base_.rate > 1e-6 && base_.rate < 1e8))

@@ -63,7 +63,7 @@ TEST_CASE("limits on a rope's force, and on what is joined to it, are open behin
     CHECK(outcome_of(rigid, "load.y") == Verdict::hold);          // places do not jump
     CHECK(outcome_of(rigid, "far pin.force_y") == Verdict::hold); // nothing joins it to the rope but the ground
     CHECK(rigid.judgement.verdict == Verdict::open);
-    CHECK(rigid.judgement.criteria.front().doubt.find("a rigid blow at t = " +
+    CHECK(rigid.judgement.criteria.front().doubt.find("a rigid impact at t = " +
                                                       std::to_string(std::sqrt(2.0 * slack / gravity)).substr(0, 6)) != std::string::npos);
     const Report elastic = run_of(falling(mass, slack, "stiffness = 1e6\ndamping = 1e3\n"));
     for (const CriterionResult& c : elastic.judgement.criteria) {

@@ -89,7 +89,7 @@ TEST_CASE("a run that holds says what is nearest, a model without criteria that 
   CHECK(holds.trust.level == TrustLevel::good);
   const Overview asks_nothing = overview_of(run_of("machines/cradle"));
   CHECK(asks_nothing.verdict == Verdict::open);
-  CHECK(asks_nothing.reason.starts_with("The model asks for nothing"));
+  CHECK(asks_nothing.reason.starts_with("The model has no criteria"));
 }
 
 TEST_CASE("a run that breaks off has no trust and says where it stopped") {

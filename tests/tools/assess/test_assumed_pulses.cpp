@@ -149,7 +149,7 @@ TEST_CASE("what a list does not tell is asked for") {
   }
   const Case nothing(k_axes_head + "2016-01-04 10:25:17;3;;1.5;100;\n2016-01-04 10:26:17;;;;100;\n");
   CHECK(refusal(nothing).find("line 3") != std::string::npos);
-  CHECK(refusal(nothing).find("tells no peak") != std::string::npos);
+  CHECK(refusal(nothing).find("has no peak:") != std::string::npos);
   const Case waves(record_csv(1000.0, 2.0, [](double) { return 0.0; }));
   CHECK(refusal(waves).find("assume none") != std::string::npos);
 }

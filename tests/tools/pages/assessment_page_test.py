@@ -296,7 +296,7 @@ class AssessmentPageTest(base.Page):
     def test_an_assessment_is_not_set_beside_other_folders(self):
         done = report("plain", "static", "-o", "both.html")
         self.assertEqual(done.returncode, 2)
-        self.assertIn("name its folder alone", done.stderr)
+        self.assertIn("name only its folder", done.stderr)
 
 
 if __name__ == "__main__":

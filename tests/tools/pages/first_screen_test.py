@@ -87,7 +87,7 @@ class FirstScreenTest(base.Page):
             summary["overview"] = dict(TOLD, verdict="hold", reason="All limits are kept.", utilisations=nearer, story=[])
 
         def ask_nothing(summary):
-            summary["overview"] = dict(TOLD, verdict="open", is_judged=False, reason="The model asks for nothing.", utilisations=LISTED[2:])
+            summary["overview"] = dict(TOLD, verdict="open", is_judged=False, reason="The model has no criteria.", utilisations=LISTED[2:])
             summary["judgement"] = dict(summary["judgement"], verdict="open", criteria=[])
 
         rewrite("no_interference", "told", tell)
@@ -162,7 +162,7 @@ class FirstScreenTest(base.Page):
     def test_without_criteria_there_is_no_verdict(self):
         self.show("unasked.html", SIZES[0])
         self.assertEqual(self.all(".badge"), [])
-        self.assertEqual(self.find(".reason").text, "The model asks for nothing.")
+        self.assertEqual(self.find(".reason").text, "The model has no criteria.")
         self.assertEqual(self.find("#limits h2").text, "Friction and strength without a criterion")
 
     def test_the_dot_of_a_margin_is_at_its_lowest(self):

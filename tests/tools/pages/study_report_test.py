@@ -174,7 +174,7 @@ class StudyReportTest(unittest.TestCase):
         data["histories"] = [{"name": "record", "all": 900, "t": [0, 1, 2, 3], "measured": [0, 2, 1, 3], "fitted": [0.5, 1.5, 1.5, 2.5]}]
         data["about"]["histories"] = [{"name": "record", "unit": "m", "channel": "block.x"}]
         same = {"method": "fit", "samples": 40, "low": None, "high": None, "interval": "", "unit": "", "variable": "", "place": 0}
-        data["findings"] = [{**same, "subject": "a, b", "quantity": "correlation", "role": "correlation", "value": 0.97, "text": "0.97", "status": "hardly told apart"}]
+        data["findings"] = [{**same, "subject": "a, b", "quantity": "correlation", "role": "correlation", "value": 0.97, "text": "0.97", "status": "strongly correlated"}]
         with open(os.path.join(WORK.name, "out", "fit.html"), "w", encoding="utf-8") as file:
             file.write(head + '<script type="application/json" id="data">' + json.dumps(data).replace("<", "\\u003c") + "</script>" + rest)
 
@@ -402,7 +402,7 @@ class StudyReportTest(unittest.TestCase):
         self.assertIn("4 of 900 measured values", self.find("#fit").text)
         self.assertIn("block.x [m]", self.text("#fit .ytitle"))
         self.assertEqual(self.run_js("return [...document.querySelectorAll('.chart')].find(c => c.dataset.chart === 'correlation').querySelector('.canvas').data[0].z"), [[1, 0.97], [0.97, 1]])
-        self.assertIn("hardly told apart", self.find("#answer .doubt").text)
+        self.assertIn("strongly correlated", self.find("#answer .doubt").text)
 
     def test_the_page_of_a_fit_shows_what_the_fit_found(self):
         self.open("sliding_block_fit")

@@ -92,7 +92,7 @@ TEST_CASE("check warns of what no core is like, with what is usual, and of masse
     const char* said;
   };
   const Case cases[] = {
-      {{"core.core.static_friction=20"}, "'static_friction' = 20 is unusual: 0.1 to 0.3 are usual (assumed: of coated sheets"},
+      {{"core.core.static_friction=20"}, "'static_friction' = 20 is unusual: 0.1 to 0.3 are usual (assumed: no value for coated sheets"},
       {{"core.core.pressure=100 MPa"}, "'pressure' = 1e+08 Pa is unusual: 0.05 MPa to 0.4 MPa are usual"},
       {{"core.core.sheets_per_layer=4"}, "'sheets_per_layer' = 4 is unusual: 1 or 2 are usual (Cogent Power"},
       {{"core.core.steps=12"}, "'steps' = 12 is unusual: 3 to 7"},

@@ -165,12 +165,13 @@ TEST_CASE("parameters that a record cannot tell apart are named, with the combin
   const Outcome outcome = bench.run(k_fit + k_few + k_history + k_mu_variable + k_peak_variable + longer);
   CAPTURE(outcome.out);
   CHECK(outcome.code == 5);
-  const study::Finding together = bench.find("fit", "not told", "mu, peak");
+  const study::Finding together = bench.find("fit", "not determined", "mu, peak");
   double mu = 0.0, peak = 0.0;
   REQUIRE(std::sscanf(together.status.c_str(),
-                      "cannot be told apart: the record stays as it is where mu changes by %lf and peak changes by %lf", &mu, &peak) == 2);
+                      "cannot be distinguished: the record does not change where mu changes by %lf and peak changes by %lf", &mu,
+                      &peak) == 2);
   CHECK(peak / mu == doctest::Approx(k_g).epsilon(1e-3)); // printed to four digits
-  CHECK(has(bench.find("fit", "not told", "duration").status, "does not hang on it"));
+  CHECK(has(bench.find("fit", "not determined", "duration").status, "does not depend on it"));
   CHECK(std::isnan(bench.find("fit", "value", "mu").low)); // no interval is claimed
 }
 
@@ -186,7 +187,7 @@ TEST_CASE("a record that the model does not describe is told, and not trusted") 
     bench.write("record.csv", record(2e-4, 3));
     const std::string wrong = "[[variable]]\nname = \"duration\"\npath = \"signal.push.duration\"\nvalue = 0.07\n";
     CHECK(bench.run(k_fit + k_few + k_history + k_mu_variable + k_peak_variable + wrong).code == 4);
-    CHECK(has(bench.find("fit", "residual, root mean square").status, "residuals hang together"));
+    CHECK(has(bench.find("fit", "residual, root mean square").status, "residuals are correlated"));
   }
   SUBCASE("the value lies beyond the range") {
     bench.write("record.csv", record(2e-4, 3));

@@ -139,7 +139,7 @@ TEST_CASE("what cannot be fitted between bounds is refused") {
   bench.write("mu.csv", table_of(measured(k_wholes[0], -k_infinity, k_infinity, 300))); // some are below zero
   const Outcome ends = bench.run(sample_study("distribution = \"uniform\"\nlower = -1\n"));
   CHECK(ends.code == 3);
-  CHECK(has(ends.err, "has ends of its own"));
+  CHECK(has(ends.err, "has its own ends"));
   const Outcome positive = bench.run(sample_study("distribution = \"lognormal\"\nlower = -1\n"));
   CHECK(positive.code == 3);
   CHECK(has(positive.err, "values above zero only"));

@@ -1,5 +1,5 @@
 // B4a and B4b: one mass with Coulomb friction, ARKODE with its root finding.
-// The direction of slip is part of the mode; sticking is a mode of its own.
+// The direction of slip is part of the mode; sticking is a separate mode.
 
 #include "arkode_runner.h"
 #include "mechanisms.h"

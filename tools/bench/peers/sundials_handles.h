@@ -1,6 +1,6 @@
 #pragma once
 
-// Owners of SUNDIALS objects, so that every peer frees what it made.
+// Owners of SUNDIALS objects, which free them.
 
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>

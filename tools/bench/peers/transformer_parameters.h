@@ -2,7 +2,7 @@
 
 // Numbers of the paper's transformer (assumed values where the paper gives none)
 // and the braking pulse. Both limbs are part of the active part here: 1.25 m
-// beside the common centre of gravity.
+// from the common centre of gravity.
 
 #include "transformer_minimal.h"
 

@@ -1,10 +1,10 @@
-// What the page asks of its server. Of runs one is under way at a time, and the next one that is asked for is that of the newest values:
-// nothing that was wanted in between is computed, and what was wanted last always comes.
+// Requests of the page to its server. One run is in progress at a time, and the next request is for the newest values: values in between
+// are never computed, the last ones always are.
 steplap.Answers = class Answers {
   constructor(onAnswer, onSilence) {
     Object.assign(this, { onAnswer, onSilence, page: Math.random().toString(36).slice(2), last: 0, shown: 0, wanted: null, underway: new Set(), sentAt: 0 });
   }
-  // Patience with a run that takes long, ms: then the newer values are sent, and the server gives the older run up.
+  // ms; after this time the newer values are sent although a run is in progress, which the server then aborts.
   static get patience() { return 150; }
   async post(path, body) {
     const reply = await fetch(path, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(body), credentials: 'omit', redirect: 'error' });
@@ -16,7 +16,7 @@ steplap.Answers = class Answers {
     if (!reply.ok) throw new Error(await reply.text());
     return reply.json();
   }
-  // `request`: { model, values, is_settled }; `since`: when somebody asked for it, ms of performance.now().
+  // `request`: { model, values, is_settled }; `since`: time of the user's action, ms of performance.now().
   want(request, since = performance.now()) {
     this.wanted = { request, since, number: ++this.last };
     this.next();

@@ -1,7 +1,7 @@
-// The page: sliders ask for runs, the answers are drawn beside the old state.
+// The page: sliders request runs, and the answers are drawn next to the old state.
 (() => {
   const make = steplap.make, at = (id) => document.getElementById(id);
-  const settleAfter = 250; // ms without a change: then errors are estimated, and what takes longer to draw is drawn
+  const settleAfter = 250; // ms without a change; then errors are estimated and slow drawings are made
   let version = 0, models = [], model = 0, before = null, now = null, isKept = false, t = 0, end = 1, isUntouched = true, settled = null;
   const scenes = [], latencies = [];
   let view = null, plots = null, timeline = null;
@@ -33,7 +33,7 @@
     settleLater();
     showMapHere();
   }
-  // A run that takes long is told of, so that nobody takes the last picture for its own.
+  // A slow run is announced, so that the last picture is not taken for its result.
   let waiting = null;
   function tellWaiting() {
     clearTimeout(waiting);
@@ -46,7 +46,7 @@
   const runOf = (answer, name) => { const run = new steplap.data.Run(answer.data.runs[0]); run.name = name; return run; };
   function onAnswer(answer, asked) {
     if (asked.request.model !== model) return;
-    // A run of a file that was saved meanwhile is no neighbour of the old state: both are asked for anew, or already are.
+    // A run of a file that was saved meanwhile cannot be compared with the old state: both are requested again, or already are.
     if (!answer.errors && !isKept && answer.version !== versionOfOld) return;
     clearTimeout(waiting);
     at('pace').textContent = '';
@@ -62,7 +62,7 @@
     draw(old, isSettled);
     if (!isSettled) notePace(asked.since);
   }
-  // From the hand to the picture: when the browser has painted what was drawn.
+  // Measures the time from the user's action until the browser has painted the answer.
   function notePace(since) {
     requestAnimationFrame(() => {
       const channel = new MessageChannel();
@@ -78,7 +78,7 @@
   }
 
   // --- old and new state ------------------------------------------------------------------------------------
-  let versionOfOld = 0, asksOfOld = 0; // the version of the file that the old state was last asked of; how many such questions are under way
+  let versionOfOld = 0, asksOfOld = 0; // version of the file for which the old state was last requested; number of such requests in progress
   async function askOld() {
     ++asksOfOld;
     try { await takeOld(); } finally { --asksOfOld; }
@@ -110,7 +110,7 @@
     if (view) view.listen(scene);
     return scene;
   }
-  // `old`: the run that was drawn as the new state before.
+  // `old`: the run that was previously drawn as the new state.
   let drawnBefore = null;
   function draw(old, isSettled) {
     const runs = [before, now], isWhole = drawnBefore !== before;
@@ -129,7 +129,7 @@
     steplap.story.build(at('story'), runs, go);
     at('time').max = String(end);
     at('worst').hidden = steplap.overview.worstOf(runs) === null;
-    // While one drags the new machine takes the place of the last one; once it rests both are fitted to the picture.
+    // While a slider is dragged the new machine keeps the view of the last one; at rest both are fitted to the picture.
     if (isSettled || !like) fit();
     else { scenes[1].fitLike(like); buildTimeline(); }
     if (isWhole) plots.setRuns(null, now);
@@ -156,7 +156,7 @@
     buildTimeline();
   }
   function buildTimeline() {
-    // A new place for the lanes: what listened to the old one goes with it.
+    // A new container for the lanes, because the listeners of the old one are removed with it.
     const lanes = make('div', { id: 'lanes' });
     at('lanes').replaceWith(lanes);
     timeline = new steplap.Timeline([before, now], end, { lanes, axis: at('time-axis'), slider: at('time'), onTime: go });
@@ -212,11 +212,11 @@
   const map = new steplap.ValueMap({ canvas: at('map'), text: at('map-text'), what: at('map-what'), onChoose: chooseOnMap,
     ask: async (x, y, cells) => {
       const values = sliders.changed();
-      if (!answers.isIdle) return { cells: [] }; // runs first
+      if (!answers.isIdle) return { cells: [] }; // runs have priority
       try { return await answers.post('cells', { model, values, x, y, cells }); } catch { return null; }
     } });
   const isMapping = () => at('map-start').getAttribute('aria-pressed') === 'true';
-  // A map is that of the other values: where one of them is changed, it begins anew.
+  // A map belongs to the other values: if one of them changes, it starts again.
   let mappedWith = '';
   const othersThanAxes = () => JSON.stringify([model, version, at('map-x').value, at('map-y').value, Object.entries(sliders.changed()).filter(([path]) => path !== at('map-x').value && path !== at('map-y').value)]);
   function axisOf(path) {
@@ -276,7 +276,7 @@
     sliders.set(one.sliders);
     offerAxes();
   }
-  // A file that was saved has a new version: its machine is drawn, or what is wrong with it is said.
+  // A saved file has a new version: its machine is drawn, or its errors are shown.
   async function follow() {
     for (;;) {
       try {
@@ -293,7 +293,7 @@
         }
         showModel();
         if (!models[model].errors.length) await askOld();
-        else versionOfOld = version; // the last machine that could be read stays
+        else versionOfOld = version; // the last machine that could be read remains
       } catch {
         onSilence();
         await new Promise((resolve) => setTimeout(resolve, 2000));

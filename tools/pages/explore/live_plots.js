@@ -1,5 +1,5 @@
-// Curves of the old and the new state over each other, drawn anew while one drags: those that are seen at once, the others when they
-// come into view.
+// Curves of the old and the new state in one figure, redrawn while a slider is dragged: visible figures at once, others when they come into
+// view.
 steplap.LivePlots = class LivePlots extends steplap.Plots {
   constructor(grid, onTime) {
     super(grid, onTime);
@@ -25,12 +25,12 @@ steplap.LivePlots = class LivePlots extends steplap.Plots {
     super.build();
     for (const plot of this.plots) this.watcher.observe(plot.box);
   }
-  // Another takes its place.
+  // Called before another object replaces this one.
   end() {
     this.watcher.disconnect();
     for (const plot of this.plots) if (plot.graph) plot.graph.destroy();
   }
-  // What is to be drawn of the runs of the page; anew where figures or channels are others.
+  // Sets the runs to draw. Figures are rebuilt if their channels differ.
   setRuns(from, to) {
     const runs = steplap.data.runs, full = [0, Math.max(...runs.map((r) => r.end))];
     const isWhole = this.window[0] === this.full[0] && this.window[1] === this.full[1], isSame = full[1] === this.full[1];
@@ -43,7 +43,7 @@ steplap.LivePlots = class LivePlots extends steplap.Plots {
     this.figures = steplap.figures.of(steplap.data.runs);
     this.build();
   }
-  // Are these other figures than those that the runs ask for by now? While one drags they stay.
+  // Returns true if the runs would now have other figures. While a slider is dragged the present ones remain.
   get isOutdated() {
     const name = (f) => `${f.name}\n${f.channels.join()}`;
     return steplap.figures.of(steplap.data.runs).map(name).join('\n') !== this.figures.map(name).join('\n');

@@ -1,6 +1,7 @@
-// A map of two values: how near the run comes to its limits at each pair of them. It is filled in from coarse to fine while one looks.
+// A map over two values: how near the run comes to its limits at each pair. It is filled in from coarse to fine.
 steplap.ValueMap = class ValueMap {
-  // `ask(x, y, cells)`: a promise of what the server finds at some of the cells, in their order. `onChoose(x, y)`: somebody points at a pair.
+  // `ask(x, y, cells)` returns a promise of the server's results for some cells, in their order. `onChoose(x, y)` is called when the user
+  // selects a pair.
   constructor({ canvas, text, what, ask, onChoose }) {
     Object.assign(this, { canvas, text, what, ask, onChoose, cells: new Map(), generation: 0, cursor: null });
     canvas.addEventListener('click', (event) => { const box = canvas.getBoundingClientRect(); this.choose(this.cellAt((event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height)); });
@@ -16,9 +17,9 @@ steplap.ValueMap = class ValueMap {
     canvas.addEventListener('pointermove', (event) => { if (this.axes) { const box = canvas.getBoundingClientRect(); this.point(this.cellAt((event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height)); } });
     what.addEventListener('change', () => this.draw());
   }
-  static get count() { return 24; } // cells a side
-  static get atOnce() { return 100; } // cells of a request
-  // Every fourth cell of every fourth row first, then what lies between.
+  static get count() { return 24; } // cells per side
+  static get atOnce() { return 100; } // cells per request
+  // Order of the cells: every fourth one of every fourth row first, then those in between.
   static order() {
     const list = [], seen = new Set(), n = ValueMap.count;
     for (const step of [8, 4, 2, 1])
@@ -29,7 +30,7 @@ steplap.ValueMap = class ValueMap {
   valueAt(axis, k) { const v = axis.least + ((axis.most - axis.least) * (k + 0.5)) / ValueMap.count; return axis.isWhole ? Math.round(v) : v; }
   choose([i, j]) { if (this.axes) this.onChoose(this.valueAt(this.axes[0], i), this.valueAt(this.axes[1], j)); }
 
-  // Axes: { path, label, unit, least, most, isWhole }. Fills the map in until it is stopped or begun anew.
+  // Axes: { path, label, unit, least, most, isWhole }. Fills the map until it is stopped or restarted.
   async start(axes) {
     const generation = ++this.generation;
     this.axes = axes;
@@ -46,21 +47,21 @@ steplap.ValueMap = class ValueMap {
         for (const name of Object.keys(cell.shares || {})) this.names.add(name);
       });
       left = left.slice(answer.cells.length);
-      if (!answer.cells.length) await new Promise((resolve) => setTimeout(resolve, 60)); // something else came first
+      if (!answer.cells.length) await new Promise((resolve) => setTimeout(resolve, 60)); // the server had other work
       this.offer();
       this.draw();
     }
   }
   stop() { ++this.generation; }
   get isWhole() { return this.cells.size === ValueMap.count ** 2; }
-  // What can be shown: the verdict, the nearest limit, or one of them.
+  // Offers the quantities to show: the verdict, the nearest limit, or one limit.
   offer() {
     const had = this.what.value, wanted = ['verdict', 'nearest limit', ...this.names];
     if (this.what.options.length === wanted.length) return;
     this.what.replaceChildren(...wanted.map((name) => steplap.make('option', { value: name }, name)));
     this.what.value = wanted.includes(had) ? had : 'verdict';
   }
-  // Share of the limit that is shown, undefined where there is none.
+  // Returns the utilisation that is shown; undefined if there is none.
   shareOf(cell) {
     const shares = cell.shares || {};
     if (this.what.value in shares) return shares[this.what.value];
@@ -72,7 +73,7 @@ steplap.ValueMap = class ValueMap {
     if (this.what.value === 'verdict' || !this.what.value) return named({ hold: 'good', inspect: 'warn-bar', reject: 'bad' }[cell.verdict] || 'plain');
     const share = this.shareOf(cell);
     if (!Number.isFinite(share)) return named('plain');
-    // Light to dark green up to the limit; beyond it from orange to red.
+    // Colours: light to dark green up to the limit, orange to red beyond it.
     if (share <= 1) return `hsl(165 70% ${Math.round(88 - 56 * Math.max(0, share))}%)`;
     return `hsl(${Math.round(32 - 32 * Math.min(1, share - 1))} 85% ${Math.round(58 - 24 * Math.min(1, share - 1))}%)`;
   }
@@ -83,13 +84,13 @@ steplap.ValueMap = class ValueMap {
       const [i, j] = key.split(',').map(Number), colour = this.colourOf(cell), x = i * size, y = (n - 1 - j) * size;
       context.fillStyle = context.strokeStyle = colour || '#888';
       if (colour) context.fillRect(x, y, size, size);
-      else { context.beginPath(); context.moveTo(x + 2, y + 2); context.lineTo(x + size - 2, y + size - 2); context.stroke(); } // no model, or no run
+      else { context.beginPath(); context.moveTo(x + 2, y + 2); context.lineTo(x + size - 2, y + size - 2); context.stroke(); } // no valid model, or no run
       if (this.what.value !== 'verdict' && this.what.value && !cell.error && this.shareOf(cell) > 1) { context.fillStyle = '#0008'; context.fillRect(x + size / 2 - 1, y + size / 2 - 1, 2, 2); } // told by more than its colour
     }
     if (this.axes && this.here) this.cross(context, size);
     this.tell();
   }
-  // Where the sliders are.
+  // Marks the values of the sliders.
   cross(context, size) {
     const n = ValueMap.count, place = this.axes.map((a, k) => ((this.here[k] - a.least) / (a.most - a.least)) * n * size), x = place[0], y = n * size - place[1];
     context.lineWidth = 3; context.strokeStyle = '#fff';

@@ -1,15 +1,15 @@
-// A slider with its number for each value that is varied, and a search for more of them. Numbers are SI.
+// A slider with a number for each value that is varied, and a search for further values. Numbers are SI.
 steplap.Sliders = class Sliders {
-  // `onChange(path, value)` while one drags, with the file's value when it is to be as in the file.
+  // `onChange(path, value)` is called during dragging, with the file's value when the value is reset.
   constructor(box, { search, found, onChange }) {
     Object.assign(this, { box, search, foundBox: found, onChange, given: new Map(), shown: [], rows: new Map(), values: new Map() });
     search.addEventListener('input', () => this.find());
     search.addEventListener('keydown', (event) => { if (event.key === 'Enter') { event.preventDefault(); const first = this.foundBox.querySelector('button'); if (first) first.click(); } });
   }
-  static get first() { return 12; } // sliders that are there from the beginning, of models with many values
+  static get first() { return 12; } // sliders shown initially for models with many values
   static label(slider) { return slider.path.replace(/^(?!simulation\.|output\.|gravity)[a-z_]+\.(?=.+\.|[^.]+$)/, '').replace(/\.([a-z_0-9]+)((\.\d+)*)$/, (_, field, items) => `: ${field.replace(/_/g, ' ')}${items.replace(/\.(\d+)/g, (__, i) => ` ${Number(i) + 1}`)}`); }
 
-  // What can be varied, of a model just read: sliders that are shown stay, and so do values that were changed.
+  // Sets the values of a model that has just been read. Sliders already shown and changed values remain.
   set(sliders) {
     this.given = new Map(sliders.map((s) => [s.path, s]));
     this.shown = this.shown.filter((path) => this.given.has(path));
@@ -18,7 +18,7 @@ steplap.Sliders = class Sliders {
     if (!this.shown.length) {
       const wanted = sliders.filter((s) => groups.includes(s.group)).sort((a, b) => groups.indexOf(a.group) - groups.indexOf(b.group));
       const parameters = wanted.filter((s) => s.group === 'parameters').length;
-      // Some of each group, where there are more than fit.
+      // If there are too many, some of each group are shown.
       const most = Math.max(Sliders.first, parameters), chosen = wanted.slice(0, parameters), rest = wanted.slice(parameters);
       for (let round = 0; chosen.length < most && chosen.length < wanted.length; ++round)
         for (const group of groups) { const s = rest.filter((r) => r.group === group)[round]; if (s && chosen.length < most) chosen.push(s); }
@@ -77,7 +77,7 @@ steplap.Sliders = class Sliders {
     this.show(slider.path);
     this.onChange(slider.path, value);
   }
-  // From elsewhere: the map, or all as in the file.
+  // Sets a value from elsewhere: the map, or a reset of all values.
   put(path, value) { this.change(this.given.get(path), value); }
   reset() {
     this.values.clear();
@@ -99,7 +99,7 @@ steplap.Sliders = class Sliders {
     row.back.hidden = !isChanged;
     row.was.textContent = isChanged ? `was ${steplap.data.quantity(slider.value, slider.unit, 4)}` : steplap.data.quantity(value, slider.unit, 4);
   }
-  // Shows a slider for a value that had none.
+  // Shows a slider for a further value.
   add(path) {
     if (!this.given.has(path)) return;
     if (!this.shown.includes(path)) { this.shown.push(path); this.build(); }

@@ -58,7 +58,7 @@
   at('title').textContent = given ? 'Assessment of a transport' : 'Static proof';
   at('subtitle').textContent = [A.records.map((r) => r.file).join(', '), (A.models.length ? A.models.map((m) => m.name) : A.statics.map((s) => s.model)).join(', ')].filter((t) => t).join(' · ');
   const sheet = steplap.assessmentSheet();
-  const kept = steplap.sheet.fit(sheet.contentOf, sheet.room); // before the page is large: it is laid out some dozen times
+  const kept = steplap.sheet.fit(sheet.contentOf, sheet.room); // before the page is large, because fitting lays it out a dozen times
   decision();
   worstEvent();
   events();

@@ -1,4 +1,4 @@
-// What an assessment holds, in the order in which the page tells it; parts that are left out are empty lists.
+// Reads an assessment in the order in which the page shows it. Missing parts are empty lists.
 steplap.assessment = (() => {
   const raw = JSON.parse(document.getElementById('data').textContent);
   const { one, percent, isKnown } = steplap.numbers;
@@ -12,7 +12,7 @@ steplap.assessment = (() => {
 
   const verdicts = ['reject', 'inspect', 'open', 'hold'];
   const rankOf = (verdict) => (verdicts.includes(verdict) ? verdicts.indexOf(verdict) : 2);
-  // What one model says of one event.
+  // Result of one model for one event.
   function said(m) {
     const joints = list(m.joints), slipping = joints.filter((j) => j.slips || j.came_apart).map((j) => j.name), byMargin = joints.filter((j) => isKnown(j.margin)).sort((a, b) => a.margin - b.margin);
     return { ...m, joints, slipping, weakest: byMargin[0] || null, margin: byMargin.length ? byMargin[0].margin : null, slid: most(joints.map((j) => j.slid)), slidTotal: most(joints.map((j) => j.slid_total)),
@@ -30,17 +30,17 @@ steplap.assessment = (() => {
   const gravest = ['return', 'inspect', 'open', 'energise'], graveness = (r) => (gravest.includes(r.outcome) ? gravest.indexOf(r.outcome) : -1);
   const inG = (value) => `${String(Number((value / gravity).toPrecision(3))).replace('-', '−')}\u00a0g`;
   const acceleration = (value, unit = 'm/s^2') => (isKnown(value) ? `${one(value, unit)}${unit === 'm/s^2' ? ` (${inG(value)})` : ''}` : '–');
-  // A peak means nothing without the bandwidth to which it was read.
+  // Text of a peak, always with the bandwidth to which it was read.
   const peakText = (p, brief) => `${p.axis}: ${brief && p.unit === 'm/s^2' ? inG(p.value) : acceleration(p.value, p.unit)} up to ${isKnown(p.bandwidth) ? one(p.bandwidth, 'Hz') : 'an unknown bandwidth'}${!brief && isKnown(p.velocity_change) ? `, Δv ${one(p.velocity_change, 'm/s')}` : ''}`;
   const chanceText = (p) => (p && isKnown(p.value) ? `${percent(p.value)} (${percent(p.low)} to ${percent(p.high)}${isKnown(p.runs) ? `, ${p.runs} runs` : ''}${p.unknown ? `, ${p.unknown} without a result` : ''})` : '–');
   const slipText = (m) => (m.slipping.length ? `${m.joints.some((j) => j.came_apart) ? 'comes apart' : 'slips'}: ${m.slipping.join(', ')}` : m.joints.length ? 'no joint slips' : 'no joints');
-  // Of a joint that slips, and of one that hardly bears anything, digits say nothing.
+  // Formats a margin. That of a joint that slips has no error, that of a joint with hardly any load is only "over 1000".
   const margin = (j) => (j.margin > 1000 ? 'over\u00a01000' : one(j.margin, '', j.slips ? {} : { error: j.error, limit: 1 }));
   const marginText = (m) => (m.weakest ? margin(m.weakest) : '–');
   const slidText = (value) => one(value, 'm', { rounding: 1e-9 });
   const timeText = (e) => (e.clock ? String(e.clock).replace('T', ' ').replace(/\.0+$/, '') : isKnown(e.time) ? one(e.time, 's') : '–');
 
-  // Where the file contradicts itself: said at the head of the page, because a reader would sign for it.
+  // Contradictions within the file, shown at the head of the page because a reader would sign for it.
   function contradictions() {
     if (!given) return [];
     const found = [];
@@ -62,7 +62,7 @@ steplap.assessment = (() => {
     const text = (s) => (statics.length > 1 ? `${s.model}: ` : '') + (s.reason || steplap.statics.weakestText(s));
     return { verdict, reason: statics.map(text).join(' ') };
   }
-  // The record itself states range and bandwidth of its recorder. They fill fields that the papers leave empty.
+  // The record states range and bandwidth of its recorder; they fill fields that the papers leave empty.
   const recorderOf = (record) => ({ record: record.file, range: isKnown(record.sensor_range) ? inG(record.sensor_range) : '', filter: isKnown(record.bandwidth) ? `read up to ${one(record.bandwidth, 'Hz')}` : '' });
   function papers() {
     const p = (given && given.shipment) || {}, stated = list(p.recorders), read = list(given && given.records).map(recorderOf);

@@ -1,8 +1,8 @@
-// Events as rows and as small curves.
+// Events as table rows and small curves.
 steplap.events = (() => {
   const make = steplap.make, { table } = steplap.tables, { one, percent, isKnown } = steplap.numbers, A = steplap.assessment;
 
-  // Of one event a row for each model; what the event has in common stands in the first.
+  // One row per model; data common to the event are in the first row.
   const heads = ['event', 'time', 'peaks, with their bandwidth', 'model', 'verdict', 'joints', 'least margin', 'slid', 'slid in all', 'overlap left', 'probability of slip', 'feet lifted', 'load of allowed', 'clearance left'];
   const numeric = [6, 7, 8, 9, 12];
   const number = (text, value) => ({ text: text === '–' ? '' : text, value });
@@ -24,7 +24,7 @@ steplap.events = (() => {
     return box;
   }
 
-  // The recorded window: x full, y dashed, z dotted; the scale is that of the event.
+  // Curve of the recorded window, scaled to the event: x solid, y dashed, z dotted.
   function curve(e) {
     const f = e.figure || {}, times = A.list(f.times), named = ['x', 'y', 'z'].filter((axis) => A.list(f[axis]).length === times.length && times.length > 1);
     if (!named.length) return null;
@@ -55,7 +55,7 @@ steplap.events = (() => {
   }
   const curves = (events) => make('div', { class: 'curves' }, ...events.map(curve).filter((c) => c));
 
-  // Everything that is known of one event.
+  // All details of one event.
   function details(e) {
     const box = make('div', {});
     const peaks = e.peaks.map((p) => [String(p.axis), A.acceleration(p.value, p.unit), one(p.bandwidth, 'Hz'), one(p.velocity_change, 'm/s')]);
@@ -73,7 +73,7 @@ steplap.events = (() => {
     }
     return box;
   }
-  // Built when it is opened: a voyage has hundreds.
+  // The content is built when the reader opens it, because a voyage may have hundreds of events.
   function fold(e) {
     const box = make('details', { class: 'event', 'data-event': e.number }, make('summary', {}, `Event ${e.number}, ${A.timeText(e)}: ${e.models.map((m) => `${m.model} ${A.outcomes[m.verdict] || m.verdict}`).join('; ') || 'not run'}`));
     box.addEventListener('toggle', () => { if (box.open && box.children.length === 1) box.append(details(e)); });

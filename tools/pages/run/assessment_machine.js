@@ -1,14 +1,15 @@
-// The machine in an event at its worst instant, as the model of the gravest verdict has it, seen from the body that carries the recorder.
+// Picture of the machine at the worst instant of an event, computed by the model with the worst verdict and seen from the body that carries
+// the recorder.
 steplap.eventMachine = (() => {
   const A = steplap.assessment;
   const isPose = (pose) => Array.isArray(pose) && pose.length === 3 && pose.every(Number.isFinite);
-  // The model of an event that has poses and a drawing: the first of the gravest verdict.
+  // Returns the model of an event that has poses and a drawing and the worst verdict; the first one if several are equal.
   function gravest(e) {
     const isDrawn = (m) => A.models.some((model) => model.name === m.model && model.drawing);
     const known = e.models.filter((m) => isDrawn(m) && Object.values(m.poses || {}).some(isPose));
     return known.sort((a, b) => A.rankOf(a.verdict) - A.rankOf(b.verdict))[0] || null;
   }
-  // { picture, text }, or null where nothing was run or written.
+  // Returns { picture, text }, or null if no run was made or written.
   function of(e, columns) {
     const said = gravest(e);
     if (!said) return null;

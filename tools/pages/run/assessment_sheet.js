@@ -1,5 +1,5 @@
-// The sheet of an assessment: papers, decision, worst events, what it depends on, assumptions, criteria, findings on arrival. The sheet of
-// a static proof alone: drawing, cases, reactions of each part. What does not fit is counted, and is on the sheets behind.
+// The sheet of an assessment: papers, decision, worst events, dependence of the decision, assumptions, criteria, findings on arrival. The
+// sheet of a static proof alone: drawing, cases, reactions of each part. Lines that do not fit are counted and are on the following sheets.
 steplap.assessmentSheet = () => {
   const make = steplap.make, { table } = steplap.tables, { one, percent, isKnown } = steplap.numbers, A = steplap.assessment;
   const { short, part, rest, bullets, orBlank, named, drawing } = steplap.sheet;
@@ -13,7 +13,7 @@ steplap.assessmentSheet = () => {
     ['texts', 45], ['reasons', 2], ['joints', 2], ['events', 3], ['tests', 2], ['assumptions', 2], ['reactions', 6], ['texts', 30],
     ['cases', 4]];
 
-  let still; // drawings take long, and the sheet is laid out some dozen times
+  let still; // kept, because drawing is slow and the sheet is laid out a dozen times
   const worstMachine = () => (still = still === undefined ? steplap.eventMachine.of(A.worst[0], 3) : still);
   const joined = (parts) => parts.flatMap((p, i) => (i ? [' · ', ...p] : p));
   function papers(keep) {
@@ -74,7 +74,7 @@ steplap.assessmentSheet = () => {
     return part('Criteria and their sources', make('p', {}, c ? short(texts, 1.5 * keep.texts) : 'No criteria are named.'),
       ...bullets(A.reasons.map((r) => sourced(r, keep.texts)), keep.reasons, 4 * keep.texts, 'reasons'));
   }
-  // What flows in two columns.
+  // Content that flows in two columns.
   function notes(keep) {
     const listed = (title, texts, kept, what, none) => part(title,
       ...(texts.length ? bullets(texts, kept, keep.texts, what) : [make('p', {}, none)]));
@@ -82,7 +82,7 @@ steplap.assessmentSheet = () => {
     const assumed = listed('Assumptions', A.assumptions, keep.assumptions, 'assumptions', none);
     if (!A.given) return [assumed];
     const unknown = A.unknown.flatMap((u) => u.list);
-    return [totals(keep), listed('What the decision hangs on', A.hangs, keep.hangs, 'values', 'Not examined.'), assumed,
+    return [totals(keep), listed('What the decision depends on', A.hangs, keep.hangs, 'values', 'Not examined.'), assumed,
       listed('Tests', A.tests, keep.tests, 'tests', 'No tests are named.'),
       listed('What the planar models do not know', unknown, keep.unknown, 'things', 'Not stated.')];
   }
@@ -101,7 +101,7 @@ steplap.assessmentSheet = () => {
     }));
     const sorted = [...rows.values()].sort((a, b) => (b.share ?? -1) - (a.share ?? -1));
     if (!sorted.length) return [];
-    const rounding = 1e-9 * Math.max(...sorted.flatMap((r) => r.values.filter(isKnown).map(Math.abs))); // of the search for rest
+    const rounding = 1e-9 * Math.max(...sorted.flatMap((r) => r.values.filter(isKnown).map(Math.abs))); // rounding of the search for equilibrium
     const allowed = (r) => (isKnown(r.allowed) ? one(r.allowed, r.unit) : 'not limited');
     const cells = (r) => [...r.values.map((v) => one(v, r.unit, { rounding })), allowed(r), percent(r.share)];
     const heads = ['part', ...cases.map((c) => short(c.name, 24)), 'allowed', 'used'];

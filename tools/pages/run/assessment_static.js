@@ -1,9 +1,9 @@
-// The static proof: its cases, and at which acceleration in each direction something first slips, slides, lifts or ends.
+// The static proof: its cases, and the acceleration in each direction at which something first slips, slides, lifts or reaches an end.
 steplap.statics = (() => {
   const make = steplap.make, { table } = steplap.tables, { one, percent, isKnown } = steplap.numbers, A = steplap.assessment;
   const kinds = { slips: 'a joint slips', slides: 'friction on the floor gives way', lifts: 'a foot lifts', ends: 'there is no equilibrium beyond', first: 'something first gives way' };
 
-  // Per kind the points [angle in degrees, acceleration or null], by angle.
+  // Returns for each kind of limit the points [angle in degrees, acceleration or null], sorted by angle.
   function limitsOf(proof) {
     const found = new Map(), angles = [...A.list(proof.polar)].filter((p) => isKnown(p.angle_deg)).sort((a, b) => a.angle_deg - b.angle_deg);
     const hasKinds = angles.some((p) => A.list(p.limits).length);
@@ -23,7 +23,7 @@ steplap.statics = (() => {
     const limits = limitsOf(proof), values = [...limits.values()].flatMap((l) => l.map((p) => p[1])).filter(isKnown);
     const loads = A.list(proof.cases).map((c) => ({ ...c, at: A.list(c.load).length === 2 && c.load.every(Number.isFinite) ? c.load : null })).filter((c) => c.at);
     if (!values.length) return null;
-    // What lies far outside would make the rest unreadable: shown up to two and a half times the middle value, and all loads.
+    // Distant values would compress all others, so the range is 2.5 times the median and includes all loads.
     const sorted = [...values].sort((a, b) => a - b), middle = sorted[Math.floor(sorted.length / 2)];
     const reach = 1.05 * Math.max(Math.min(sorted[sorted.length - 1], 2.5 * middle), ...loads.map((c) => Math.hypot(...c.at))), step = niceStep(reach);
     const w = 440, h = 400, cx = 220, cy = 200, R = 155, at = (angle, a) => [cx + (R * a * Math.cos((angle * Math.PI) / 180)) / reach, cy - (R * a * Math.sin((angle * Math.PI) / 180)) / reach];

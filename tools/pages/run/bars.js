@@ -1,24 +1,25 @@
-// How near each limit is: bars to one scale, the worst first, with the limit as a line through all of them. Of several
-// runs a bar each under the same name; what has another name in another run, but is of the same kind at the same place, too.
+// Utilisation of each limit as bars on one scale, the highest first, with the limit as a line through all of them. Several runs have one
+// bar each under a common name; bars of the same kind at the same place are paired even if their names differ.
 steplap.bars = (() => {
   const make = steplap.make, { percent, one, full, isKnown } = steplap.numbers;
-  const first = 8, firstOfSeveral = 6, firstOfOthers = 3; // rows that are seen without asking for more
-  const longest = 1.6; // of the limit: what is beyond it is cut off, with an arrow that says so
+  const first = 8, firstOfSeveral = 6, firstOfOthers = 3; // rows shown before the reader asks for more
+  const longest = 1.6; // of the limit; longer bars are cut off with an arrow
 
-  // Results of earlier versions do not say which shares are those of criteria: these have a limit.
+  // Results of earlier versions do not mark the utilisations of criteria; these have a limit.
   const isJudged = (u) => u.is_judged ?? isKnown(u.limit);
-  const isSlip = (u) => u.beyond && !isKnown(u.value) && u.share === 1; // its words stand in place of two equal numbers
-  // A share that no criterion limits has no alarm colour, however large it is.
+  const isSlip = (u) => u.beyond && !isKnown(u.value) && u.share === 1; // shown in words instead of two equal numbers
+  // A utilisation without criterion has no alarm colour, however large it is.
   const stateOf = (u) => (!isJudged(u) ? 'plain' : u.beyond || u.share > 1 ? 'bad' : u.share >= 0.7 ? 'warn' : 'good');
-  const size = (u) => (isKnown(u.share) ? u.share : Infinity); // no number, but a limit: an infinite load or no capacity
-  // What a bar tells of, apart from its name: the kind of element, what is told of it, and where it is at rest; null if it is of none.
+  const size = (u) => (isKnown(u.share) ? u.share : Infinity); // a limit without number: infinite load or no capacity
+  // Returns the subject of a bar without its name: kind of element, kind of limit and place in the reference pose; null if it has no
+  // element.
   function subjectOf(u, run) {
     const element = run.drawing.elements.filter((e) => (u.channel || '').startsWith(`${e.name}.`)).sort((a, b) => b.name.length - a.name.length)[0], place = element && placeOf(element, run);
     if (!place) return null;
     const body = run.drawing.bodies.find((b) => b.name === place.body), aspect = u.name.startsWith(element.name) ? u.name.slice(element.name.length) : '';
     return { what: [element.kind, u.channel.slice(element.name.length), aspect].join('\n'), at: steplap.geometry.apply((body && body.pose) || [0, 0, 0], place.point) };
   }
-  // A place of its own, that of its limb, or that of the first contact that it brakes; undefined if it has none.
+  // Returns the element's own place, that of its limb, or that of the first contact that it brakes; undefined if there is none.
   function placeOf(element, run) {
     if (element.at && element.at.length) return element.at[0];
     if (element.limb) return { body: element.limb, point: [0, 0] };
@@ -29,7 +30,7 @@ steplap.bars = (() => {
     const box = run.drawing.bodies.reduce((b, body) => b.take((body.pose || [0, 0]).slice(0, 2)), new steplap.Box());
     return Math.max(...box.span);
   };
-  // Rows that stand in some runs only find their partner in the others by place, if there is exactly one.
+  // Pairs rows that exist in some runs only by place, if the match is unique.
   function pairByPlace(rows, runs) {
     const near = 0.01 * Math.max(...runs.map(sizeOf)), subjects = rows.map((row) => row.entries.map((u, k) => (u ? subjectOf(u, runs[k]) : null)));
     const isSame = (i, j) => rows[i].entries.every((u, k) => !u || !rows[j].entries[k]) && subjects[i].some((a) => a && subjects[j].some((b) => b && a.what === b.what && steplap.geometry.length(steplap.geometry.minus(a.at, b.at)) <= near));
@@ -44,18 +45,18 @@ steplap.bars = (() => {
     });
     return rows.filter((_, i) => !gone.has(i));
   }
-  // Over its bars: the name, both names where runs call it differently, and where it stands alone.
+  // Heading over the bars: the name, both names if runs differ, and the runs without such a bar.
   function headOf(row, runs) {
     const names = [...new Set(row.entries.filter(Boolean).map((u) => u.name))], without = runs.filter((_, k) => !row.entries[k]);
     const alone = without.length ? make('span', { class: 'alone-note' }, ` not in ${without.map((r) => r.name).join(', ')}`) : '';
     return make('h4', {}, names.join(' / '), alone);
   }
-  // Of a criterion of many elements a run tells the worst, which may be another one in another run: "joint margin (back joint)".
+  // A criterion of many elements is reported for the worst one, which may differ between runs: "joint margin (back joint)".
   function keyOf(u) {
     const element = (u.channel || '').replace(/\.[^.]*$/, '');
     return element && u.name.endsWith(` (${element})`) ? u.name.slice(0, -element.length - 3) : u.name;
   }
-  // Rows { name, entries: [one a run, or undefined] }, the worst first.
+  // Returns rows { name, entries: [one per run, or undefined] }, the worst first.
   function rowsOf(runs) {
     const rows = new Map();
     runs.forEach((run, k) => {
@@ -68,12 +69,12 @@ steplap.bars = (() => {
     const worst = (row) => Math.max(...row.entries.filter(Boolean).map(size));
     return pairByPlace([...rows.values()], runs).sort((a, b) => worst(b) - worst(a));
   }
-  // "124 of 156 kN", or "1.1, asked 1.2" where more is better; nothing where the share says it all.
+  // "124 of 156 kN", or "1.1, asked 1.2" if more is better; empty if the percentage is sufficient.
   function ofLimit(u) {
-    if (isSlip(u) || u.limit === 0) return u.detail || ''; // of nothing there is no part
+    if (isSlip(u) || u.limit === 0) return u.detail || ''; // a limit of zero has no percentage
     if (!isKnown(u.value) || !isKnown(u.limit) || (!u.unit && u.limit === 1)) return '';
     if (!u.unit && (u.channel || '').endsWith('share')) return `${percent(u.value)} of ${percent(u.limit)}`;
-    if (!u.unit && u.detail) return u.detail; // it says what the number is
+    if (!u.unit && u.detail) return u.detail; // the detail names the number
     const { texts, unit } = steplap.numbers.column([{ value: u.value }, { value: u.limit }], u.unit || '');
     const isLeast = Math.abs(u.value) > 0 && Math.abs(u.share - u.limit / u.value) < 1e-6 * Math.abs(u.share) && u.value !== u.limit;
     if (isLeast) return `${steplap.numbers.withUnit(texts[0], unit)}, asked ${steplap.numbers.withUnit(texts[1], unit)}`;
@@ -89,7 +90,7 @@ steplap.bars = (() => {
     button.addEventListener('click', () => onChoose(u, run));
     return button;
   }
-  // `onChoose(utilisation, run)`: a reader asks for its curve and instant.
+  // `onChoose(utilisation, run)` is called when a reader selects a bar, to show its curve and instant.
   function build(box, runs, onChoose) {
     const rows = rowsOf(runs), isOne = runs.length === 1, seen = isOne ? first : firstOfSeveral;
     box.hidden = !rows.length;

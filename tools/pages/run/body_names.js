@@ -1,11 +1,11 @@
-// Names of bodies in the picture. A name stands on its body where it has room there, otherwise beside it with a line that leads to it;
-// never on another body or another name. A name without a place is left out, and the picture says how many are (legend.js).
+// Names of bodies in the picture. A name lies on its body if there is room, otherwise next to it with a leader line, but never on another
+// body or name. Names without room are omitted, and the picture shows how many (legend.js).
 (() => {
   const make = steplap.make, { add, minus, scaled, dot, length, seenIn, apply } = steplap.geometry;
   const font = '12px "DejaVu Sans", Arial, sans-serif', lineHeight = 14, air = 3; // pixels
   const rings = [6, 18, 34, 54, 80, 110, 150, 200, 260]; // pixels between a name and the box around its body
   const most = 40, mostCrowded = 16; // bodies with names; bodies whose names may be far from them
-  const onBody = 6, beside = 12; // places remembered for each name, in case bodies pass each other
+  const onBody = 6, beside = 12; // candidate places stored per name, in case bodies pass each other
   const canvas = document.createElement('canvas').getContext('2d');
 
   const grid = (low, high, count) => Array.from({ length: count }, (_, k) => low + ((high - low) * (k + 0.5)) / count);
@@ -14,7 +14,7 @@
   const isIn = ([x, y], box, gap) => x > box[0] - gap && x < box[2] + gap && y > box[1] - gap && y < box[3] + gap;
   const nearestIn = (box, [x, y]) => [Math.min(Math.max(x, box[0]), box[2]), Math.min(Math.max(y, box[1]), box[3])];
 
-  // A name in one line, and in two if it has several words.
+  // Layouts of a name: one line, and two lines if it has several words.
   function layoutsOf(name) {
     const words = name.split(' '), all = [[name]];
     if (words.length > 1) {
@@ -34,7 +34,7 @@
       this.nameLayer.append(element);
       this.marks.set(body.name, { layouts: layoutsOf(body.name), places: [], spot: null, element, leader, text, written: null });
     },
-    // Box of the name now, pixels; null if it is left out.
+    // Returns the present box of the name in pixels; null if it is omitted.
     nameBox(name, pose) {
       const { spot } = this.marks.get(name);
       return spot ? boxAt(add(this.toScreen(pose(name)), spot.shift), spot.layout) : null;
@@ -60,14 +60,14 @@
       const written = layout.lines.map((line, k) => make('tspan', { x: 0, y: lineHeight * (k + 0.8) }, (k ? ' ' : '') + line));
       mark.text.replaceChildren(...written);
     },
-    // The place of the body nearest to a name, on the screen.
+    // Returns the point of the body nearest to a name, on the screen.
     leaderEnd(body, box, pose) {
       const middle = [0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])], p = pose(body.name);
       return this.toScreen(apply(p, steplap.forms.nearest(body, seenIn(p, this.toPlane(...middle))) || [0, 0]));
     },
 
     // --- what is where --------------------------------------------------------------------------------
-    // Lines of a body: bars, its outline if it has two points, struts; [from, to, half of the width in pixels].
+    // Returns the lines of a body (bars, an outline of two points, struts) as [from, to, half of the width in pixels].
     linesOf(body) {
       if (!body.lines)
         body.lines = [...body.segments.map(([x0, y0, x1, y1, thickness]) => [[x0, y0], [x1, y1], 0.5 * (thickness || 0)]),
@@ -85,7 +85,8 @@
       const edge = steplap.forms.nearest(body, p);
       return Boolean(edge) && length(minus(p, edge)) < 4 / this.scale;
     },
-    // Names of bodies, in the order in which they are drawn. Of 'exact' only what is painted counts, of others a margin about it as well.
+    // Returns the names of bodies at a point in the order of drawing. Of the body `exact` only painted areas count, of others also a
+    // margin.
     bodiesAt(point, pose, exact) {
       const found = [];
       for (const body of this.bodies.values()) {
@@ -96,11 +97,11 @@
       }
       return found;
     },
-    // 0: on its body alone; 1: on none; 2: on its own, which is seen before the others; 3: on another.
+    // Ranks a place: 0 on its body alone; 1 on no body; 2 on its own body, which lies above others; 3 on another body.
     rankOf(name, screen, pose) {
       const at = this.bodiesAt(this.toPlane(...screen), pose, name), own = at.indexOf(name);
       if (!at.length) return 1;
-      // A body around another one is translucent: it hides nothing of what is within, whichever is drawn first.
+      // A body around another one is translucent and hides nothing inside it, in whichever order they are drawn.
       const isWithin = (inner, outer) => this.isBehind(outer) && this.body(inner).reach < this.body(outer).reach;
       const isHidden = at.some((other, i) => other !== name && (i > own ? !isWithin(name, other) : isWithin(other, name)));
       return own < 0 || isHidden ? 3 : at.length > 1 ? 2 : 0;
@@ -109,7 +110,7 @@
       if (!this.behind) this.behind = new Set([...this.bodies.values()].filter((body) => this.isAround(body)).map((body) => body.name));
       return this.behind.has(name);
     },
-    // Is all of the box on the body, seen (or, beside it, on none)?
+    // Returns true if the whole box is on the visible body or, if `isBeside`, on no body.
     isNameClear(name, box, isBeside, pose) {
       if (box[0] < 2 || box[1] < 2 || box[2] > this.width - 2 || box[3] > this.height - this.footHeight() - 4) return false;
       return grid(box[0], box[2], 5).every((x) => grid(box[1], box[3], 3).every((y) => {
@@ -125,7 +126,7 @@
       const [left, bottom] = this.toScreen(box.low), [right, top] = this.toScreen(box.high);
       return [left, top, right, bottom];
     },
-    // Middles of a name on its body, nearest to the body's middle first.
+    // Returns candidate centres for a name on its body, nearest to the body's centre first.
     placesOn(around, { width, height }) {
       const [left, top, right, bottom] = around, middle = [0.5 * (left + right), 0.5 * (top + bottom)];
       if (right - left < width || bottom - top < height) return [];
@@ -133,7 +134,7 @@
       const found = columns.flatMap((x) => rows.map((y) => [x, y]));
       return found.sort((a, b) => length(minus(a, middle)) - length(minus(b, middle)));
     },
-    // Middles of a name around a box, nearest first.
+    // Returns candidate centres for a name around a box, nearest first.
     placesBeside(around, { width, height }) {
       const [left, top, right, bottom] = around, found = [];
       for (const gap of this.bodies.size > mostCrowded ? rings.slice(0, 4) : rings) {
@@ -147,7 +148,7 @@
       }
       return found;
     },
-    // Gives each body's name its place in the reference pose; small bodies choose first.
+    // Chooses the place of each name in the reference pose; small bodies choose first.
     spreadNames() {
       const rest = (name) => this.reference(name), taken = [], symbols = this.symbols.occupied();
       for (const [name, mark] of [...this.marks].sort((a, b) => this.body(a[0]).reach - this.body(b[0]).reach)) {
@@ -175,7 +176,7 @@
       const end = this.leaderEnd(body, box, pose), from = nearestIn(box, end);
       return grid(0, 1, 16).every((s) => taken.every((other) => !isIn(add(from, scaled(minus(end, from), s)), other, 1)));
     },
-    // Bodies pass each other: a name that would lie on another one, or on another body, goes aside for as long.
+    // Moves a name aside while it would lie on another name or body, because bodies pass each other.
     settleNames(pose) {
       const settled = [];
       for (const [name, mark] of this.marks) {

@@ -4,7 +4,7 @@ steplap.casesSheet = (found) => {
   const { part, named, drawing, smaller } = steplap.sheet, { model, cases } = found, usual = 8.5; // pt
 
   const limitOf = (one, name) => one.limits.findIndex((l) => l.limit === name);
-  // A limit that has no utilisation, such as an event, shows its outcome.
+  // Shows the outcome of a limit that has no utilisation, such as an event.
   function used(one, name) {
     const limit = one.limits[limitOf(one, name)];
     if (!limit) return '–';

@@ -1,4 +1,4 @@
-// The runs of the page, read from its JSON; numbers and units as text.
+// Runs of the page, read from its JSON; formats numbers and units as text.
 steplap.data = (() => {
   function bytesOf(text) {
     const letters = atob(text), bytes = new Uint8Array(letters.length);
@@ -8,9 +8,8 @@ steplap.data = (() => {
   const floats = (text) => new Float32Array(bytesOf(text).buffer);
   const doubles = (text) => new Float64Array(bytesOf(text).buffer);
 
-  // A time history; values are kept as differences from `zero`, so that single precision is enough for a
-  // millimetre in metres of travel. Numbers are read from their text when they are first asked for: the first picture
-  // needs few of the channels.
+  // A time history. Values are stored as differences from `zero`, so that single precision resolves a millimetre within metres of travel.
+  // Numbers are parsed on first use, because the first picture needs few channels.
   class Channel {
     constructor(raw, times) {
       this.name = raw.name;
@@ -22,10 +21,10 @@ steplap.data = (() => {
     get rest() { return this.held || (this.held = floats(this.raw.values)); }
     get times() { return this.ownTimes || (this.ownTimes = this.raw.times ? floats(this.raw.times) : this.commonTimes); }
     get length() { return this.rest.length; }
-    // Differences are known to some 1e-7 of the first value: less than that is nothing.
+    // Differences are accurate to about 1e-7 of the first value; smaller ones count as zero.
     known(value) { return Math.abs(value) < 2e-7 * Math.abs(this.zero) ? 0 : value; }
     value(i) { return this.known(this.zero + this.rest[i]); }
-    // Linear between samples; held before the first and after the last.
+    // Linear between samples, constant before the first and after the last.
     at(t) { return this.known(this.zero + this.restAt(t)); }
     restAt(t) {
       const n = this.rest.length;
@@ -54,7 +53,7 @@ steplap.data = (() => {
       this.times = raw.times ? doubles(raw.times) : new Float64Array([0, 1]);
       this.channels = new Map(raw.channels.map((c) => [c.name, new Channel(c, this.times)]));
     }
-    // Mode of an element with friction: of the sample before t, changed by what happened since.
+    // Returns the mode of a friction element: that of the sample before t, changed by events since then.
     modeAt(element, t) {
       const mode = this.channel(`${element}.mode`);
       if (!mode) return NaN;
@@ -69,18 +68,18 @@ steplap.data = (() => {
       return value;
     }
     channel(name) { return this.channels.get(name); }
-    // What a channel is, with its sign and codes; '' if the results do not say.
+    // Returns the meaning of a channel with its sign and codes; '' if the results do not state it.
     meaning(name) {
       const entry = this.summary.extremes[name], list = this.summary.meanings;
       return entry && list && list[entry.meaning] ? `${name} [${entry.unit || '–'}]: ${list[entry.meaning]}` : '';
     }
-    // The written instant next to t.
+    // Returns the sample time nearest to t.
     nearestTime(t) {
       const i = Math.max(0, indexBefore(this.times, t)), next = Math.min(i + 1, this.times.length - 1);
       return this.times[next] - t < t - this.times[i] ? this.times[next] : this.times[i];
     }
     get end() { return this.times[this.times.length - 1]; }
-    // Names that match patterns with * and ?.
+    // Returns the names that match patterns with * and ?.
     matching(patterns) {
       const found = [];
       for (const pattern of patterns) {
@@ -96,8 +95,8 @@ steplap.data = (() => {
   const prefixable = new Set(['m', 'N', 'N m', 'Pa', 'rad', 'J', 's', 'm/s', 'rad/s', 'W', 'Hz', 'N/m']);
   const pretty = (unit) => unit.replace(/\^2/g, '²').replace(/\^3/g, '³').replace(/ /g, '\u00a0');
 
-  // { factor, unit }: what a quantity of this size is best written in. Millimetres and milliradians go
-  // further down than other prefixes: that is what drawings are dimensioned in.
+  // Returns { factor, unit } for the most readable unit of a quantity of this size. Millimetres and milliradians are used for smaller
+  // values than other prefixes, because drawings are dimensioned in them.
   function scaleFor(unit, size) {
     if (unit === 'm^2' && size < 0.01 && size > 0) return { factor: 1e6, unit: 'mm²' };
     if ((unit === 'm' || unit === 'rad') && size < 1 && size >= 2e-6) return { factor: 1e3, unit: 'm' + unit };
@@ -112,7 +111,7 @@ steplap.data = (() => {
     const number = plain(value * scale.factor, digits);
     return scale.unit ? number + '\u00a0' + scale.unit : number;
   }
-  // Without trailing zeros; a real minus sign.
+  // Formats a number without trailing zeros, with a real minus sign.
   function plain(value, digits = 5) {
     if (value === 0) return '0';
     const size = Math.abs(value);
@@ -122,7 +121,7 @@ steplap.data = (() => {
     return text.replace('-', '−');
   }
 
-  // Of the sheets of step-lap joints one kind of interface a corner: a core has many.
+  // Returns one interface per corner of the step-lap joints, because a core has many equal ones.
   function corners(run) {
     const cores = run.drawing.cores || [], cornerOf = (s) => (cores.some((core) => s.name.startsWith(`${core.name}: `)) ? s.name.replace(/(, packets? .*| \d+)$/, '') : s.name);
     const found = new Map();
@@ -130,23 +129,23 @@ steplap.data = (() => {
     return [...found.values()];
   }
 
-  // What has the same index in several runs: their names, each once, in the order in which they come.
+  // Merges lists of several runs: each name once, in the order of first appearance.
   const unique = (lists) => [...new Set(lists.flat())];
 
   const raw = JSON.parse(document.getElementById('data').textContent);
-  // A machine of which only the drawing is known, as it is given.
+  // A run that consists of a drawing only, shown in the given pose.
   const still = (name, drawing) => new Run({ name, drawing, summary: { extremes: {} }, events: [], channels: [], poseOf: () => null });
   const runs = raw.runs.map((r) => new Run(r));
   return { program: raw.program, modes: raw.modes, loadCases: raw.load_cases, still, runs,
     Run, indexBefore, scaleFor, quantity, plain, pretty, corners, unique };
 })();
 
-// Elements of the page; texts only ever as text.
+// Creates an element of the page. Strings are added as text, never as markup.
 steplap.make = (name, attributes = {}, ...children) => {
   const isSvg = steplap.make.svg.has(name);
   const element = isSvg ? document.createElementNS('http://www.w3.org/2000/svg', name) : document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-  for (const c of children) element.append(c instanceof Node ? c : String(c)); // there may be very many
+  for (const c of children) element.append(c instanceof Node ? c : String(c)); // appended one by one, since there may be too many for one call
   return element;
 };
 steplap.make.svg = new Set(['svg', 'g', 'path', 'polygon', 'line', 'circle', 'rect', 'text', 'title', 'tspan', 'clipPath']);

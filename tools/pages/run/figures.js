@@ -1,12 +1,12 @@
-// Which curves are shown: first what criteria ask about and no figure of the model shows, then the model's figures. A
-// model without figures gets some by kind. Channels that are only rounding are left out.
+// Chooses the curves to show: first those that criteria limit and no figure of the model contains, then the model's figures. A model
+// without figures gets one per kind of channel. Channels that are only rounding are omitted.
 steplap.figures = (() => {
   const { isRounding } = steplap.numbers, q = steplap.quantities;
   const most = 8, mostAsked = 4, mostCurves = 7;
   const unitOf = (run, name) => run.channel(name).unit;
   const endingOf = (name) => name.slice(name.lastIndexOf('.') + 1);
 
-  // What moves not at all beside others of its unit: of no interest where nobody asked for it.
+  // Returns true if a channel is constant up to rounding; it is then shown only if a criterion names it.
   function isFlat(run, name) {
     const e = run.summary.extremes[name];
     if (!e || e.min === null || e.max === null) return false;
@@ -16,13 +16,13 @@ steplap.figures = (() => {
 
   const titles = { force: 'Forces', tension: 'Tensions', couple: 'Couples', reaction: 'Reactions', friction: 'Friction forces', share: 'Shares of what friction holds', slide: 'Slides', margin: 'Margins of the joints', p_req: 'Pressures that the joints need',
     theta: 'Angles', x: 'Horizontal positions', y: 'Vertical positions', ax: 'Horizontal accelerations', ay: 'Vertical accelerations', gap: 'Gaps', slid_share: 'Slid shares of the overlaps' };
-  // Forces are told apart by what transmits them.
+  // Titles distinguish forces by the element that transmits them.
   function titleOf(run, name) {
     const ending = endingOf(name), element = run.drawing.elements.find((e) => `${e.name}.${ending}` === name);
     if (!element || !['force', 'couple', 'reaction'].includes(ending)) return titles[ending] || ending.replace(/_/g, ' ');
     return `${titles[ending]} of ${q.groupOf(element.kind)}`;
   }
-  // Figures of channels that have title and unit in common.
+  // Groups channels with the same title and unit into figures.
   function grouped(runs, names, limit) {
     const groups = new Map();
     for (const name of names) {
@@ -39,7 +39,7 @@ steplap.figures = (() => {
     const endings = ['slide', 'friction', 'force', 'couple', 'tension', 'reaction', 'margin', 'p_req', 'theta', 'x', 'y'], names = [];
     for (const ending of endings) {
       const found = steplap.data.unique(runs.map((r) => r.matching([`*.${ending}`]))).filter((name) => !isFlatIn(runs, name));
-      // What reaches furthest first: there may be more of them than a figure can show.
+      // Channels with the largest range come first, since there may be more than a figure can show.
       const reach = (name) => Math.max(...runs.map((r) => { const e = r.summary.extremes[name]; return e ? e.max - e.min || 0 : 0; }));
       names.push(...found.sort((a, b) => reach(b) - reach(a)));
     }
@@ -49,7 +49,7 @@ steplap.figures = (() => {
     const names = steplap.data.unique(runs.map((run) => [...q.limitsOf(run).keys()]));
     return grouped(runs, names.filter((name) => !shown.has(name) && !isFlatIn(runs, name)), mostAsked);
   }
-  // A figure for each plot of the models, else for each kind of channel that says most.
+  // Returns one figure per plot of the models, otherwise one per informative kind of channel.
   function of(runs) {
     const own = new Map();
     for (const run of runs) for (const plot of run.drawing.plots) if (!own.has(plot.name)) own.set(plot.name, plot);

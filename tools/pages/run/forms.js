@@ -1,10 +1,10 @@
-// What bodies are made of, for those who draw beside them: edges, where a line leaves a body, where it meets another.
+// Geometry of bodies for other drawings: edges, the point where a line leaves a body, the point where it meets another one.
 steplap.forms = (() => {
   const { add, minus, scaled, dot, length, apply } = steplap.geometry;
   const cross = (a, b) => a[0] * b[1] - a[1] * b[0];
   const sides = 24; // of a circle
 
-  // In the body's axes: pairs of points.
+  // Returns the edges in the body's axes as pairs of points.
   function edgesOf(body) {
     if (body.edges) return body.edges;
     const edges = [], ring = (points) => points.forEach((p, i) => edges.push([p, points[(i + 1) % points.length]]));
@@ -16,7 +16,7 @@ steplap.forms = (() => {
     body.edges = edges;
     return edges;
   }
-  // Distances from p along the unit vector d at which a line crosses the body in a pose, in order.
+  // Returns the distances from p along the unit vector d at which a line crosses the body in a pose, in ascending order.
   function crossings(body, pose, p, d) {
     const found = [];
     for (const edge of edgesOf(body)) {
@@ -27,7 +27,7 @@ steplap.forms = (() => {
     }
     return found.sort((x, y) => x - y);
   }
-  // The place on the body's edges nearest to a point of its axes; null for a body without edges.
+  // Returns the point on the body's edges nearest to p, in its axes; null for a body without edges.
   function nearest(body, p) {
     let best = null;
     for (const [a, b] of edgesOf(body)) {
@@ -41,7 +41,7 @@ steplap.forms = (() => {
     ring.forEach((a, i) => { const b = ring[(i + 1) % ring.length]; if (a[1] > p[1] !== b[1] > p[1] && p[0] < a[0] + ((b[0] - a[0]) * (p[1] - a[1])) / (b[1] - a[1])) is = !is; });
     return is;
   }
-  // Holes count as inside.
+  // Returns true for points inside the outline, including holes.
   function isInside(body, p) {
     const within = (ring) => isWithin(ring, p);
     return (body.outline.length > 2 && within(body.outline)) || body.polygons.some(within) || body.circles.some(([x, y, r]) => length(minus(p, [x, y])) <= r * (1 + 1e-6));

@@ -12,10 +12,10 @@ steplap.geometry = (() => {
   const unit = (a) => (length(a) > 0 ? scaled(a, 1 / length(a)) : [0, 1]);
   const apply = (pose, p) => add([pose[0], pose[1]], turn(p, pose[2]));
   const seenIn = (pose, p) => turn(minus(p, [pose[0], pose[1]]), -pose[2]);
-  // Pose of b as the frame a sees it.
+  // Returns the pose of b relative to a.
   const relative = (a, b) => [...turn([b[0] - a[0], b[1] - a[1]], -a[2]), b[2] - a[2]];
-  // What of `corners` is lowest over the line through `origin` with the normal n, and on it: the middle, on the line.
-  // `ends`: of the line, along [n_y, -n_x].
+  // Returns the lowest of `corners` above the line through `origin` with the normal n, projected onto the line; the middle if several are
+  // equal. `ends` limits the line along [n_y, -n_x].
   const lowest = (n, origin, corners, ends = [-Infinity, Infinity]) => {
     if (!corners.length) return null;
     const along = [n[1], -n[0]], height = (p) => dot(n, minus(p, origin));
@@ -24,7 +24,7 @@ steplap.geometry = (() => {
     const low = Math.max(Math.min(...touching), ends[0]), high = Math.min(Math.max(...touching), ends[1]);
     return { gap: height(first), n, at: add(scaled(n, dot(n, origin)), scaled(along, 0.5 * (low + high))) };
   };
-  // Of two convex outlines that touch: where, and the direction in which the second presses the first.
+  // Returns the contact point of two touching convex outlines, and the direction in which the second one presses the first.
   const facing = (first, second) => {
     let best = null;
     for (const [own, other, sign] of [[second, first, 1], [first, second, -1]]) {
@@ -43,7 +43,7 @@ steplap.geometry = (() => {
   return { lowest, facing, turn, add, minus, scaled, dot, length, unit, apply, seenIn, relative };
 })();
 
-// Least box around points.
+// Bounding box of points.
 steplap.Box = class Box {
   constructor() { this.low = [Infinity, Infinity]; this.high = [-Infinity, -Infinity]; }
   take(p, reach = 0) {
@@ -57,7 +57,7 @@ steplap.Box = class Box {
   joined(other) { const box = new Box(); for (const b of [this, other]) if (!b.isEmpty) box.take(b.low).take(b.high); return box; }
 };
 
-// The ends of an edge that wheels roll on, one behind the other: of sizes radius, x, y, x, y, thickness, and further x, y of a road.
+// Returns the ends of an edge on which wheels roll, in order. `sizes` are radius, x, y, x, y, thickness, and further x, y of a road.
 steplap.endsOfEdge = (sizes) => {
   const numbers = [...sizes.slice(1, 5), ...sizes.slice(6)], ends = [];
   for (let i = 0; i + 1 < numbers.length; i += 2) ends.push([numbers[i], numbers[i + 1]]);

@@ -1,7 +1,7 @@
-// The start pose, dashed, of bodies that are drawn elsewhere: where a thing was on what carries it.
+// Draws the start pose of displaced bodies, dashed, at its place on the body that carries them.
 (() => {
   const make = steplap.make, { minus, length, apply } = steplap.geometry;
-  const least = 3; // pixels between a body and its ghost
+  const least = 3; // pixels; smallest displacement that gets a ghost
   const most = 40; // bodies
 
   Object.assign(steplap.Scene.prototype, {
@@ -17,12 +17,12 @@
         if (isSeen) this.putAt(group, at);
       });
     },
-    // Stands a body's ghost on ground that passes by?
+    // Returns true if the ghost of a body is on ground that passes by.
     isLeftBehind(name) {
       const journey = this.seenFrom === 'ground' ? null : this.journey();
       return Boolean(journey) && !journey.carried && this.isHeld(this.carrierOf(name));
     },
-    // Puts what is drawn in a body's axes where the body is.
+    // Moves a drawing in body axes to the body's pose.
     putAt(group, [x, y, angle]) {
       const c = this.scale * Math.cos(angle), s = this.scale * Math.sin(angle), [sx, sy] = this.toScreen([x, y]);
       group.setAttribute('transform', `matrix(${c} ${-s} ${-s} ${-c} ${sx} ${sy})`);

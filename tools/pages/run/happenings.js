@@ -1,17 +1,17 @@
-// What lifted, broke, came apart or slipped, marked where it did, from when it happens: by the sign of the timeline and in words. Where
-// there are many, only what broke or came apart has its sign: the others are told by colour (symbols.js), or they would hide the machine.
-// Friction that slips has its own words (symbols.js).
+// Marks elements that lifted, broke, came apart or slipped from that instant on, with the sign of the timeline and in words. If there are
+// many, only breaks and separations get a sign; the others are only coloured (symbols.js), because signs would hide the machine. Sliding
+// friction has its own words (symbols.js).
 (() => {
   const make = steplap.make, { add, scaled } = steplap.geometry;
   const most = 30, mostInWords = 5; // elements
   const size = 16; // pixels of a sign
   const grave = ['break', 'apart', 'open', 'slip'];
   const past = { lifts: 'lifted', opens: 'opened', breaks: 'broke', 'comes apart': 'came apart', slips: 'slipped', tips: 'tips', 'loses an interface': 'lost an interface' };
-  const onFirst = new Set(['contact', 'faces', 'touch', 'edge_touch']); // of which the first place is that of what lifts
+  const onFirst = new Set(['contact', 'faces', 'touch', 'edge_touch']); // kinds whose first place belongs to the part that lifts
 
   Object.assign(steplap.Scene.prototype, {
-    // Names of elements that slipped, opened or broke, and bodies that tipped: they are drawn in colour from when it happens. `story`: of
-    // the summary, which has the word for what each did.
+    // Names of elements that slipped, opened or broke, and of bodies that tipped; they are coloured from that instant on. `story` of the
+    // summary contains the word for each.
     setMoved(names, story = []) {
       this.moved = new Set(names || []);
       for (const { group } of this.happenings || []) group.remove();
@@ -20,11 +20,11 @@
       const isFew = found.length <= mostInWords, isGrave = ({ name }) => this.run.events.some((e) => e[1] === name && ['break', 'apart'].includes(e[4]));
       this.happenings = (isFew ? found : found.filter(isGrave)).slice(0, most).map((h) => ({ ...h, isInWords: isFew, ...this.happeningMark(h.name) }));
     },
-    // Of an element its first place or the middle of its places, of a body that tips its centre of gravity.
+    // Returns the first place or the middle of the places of an element, or the centre of gravity of a body that tips.
     happeningPlace(name) {
       const element = this.byName.get(name), shapes = element ? this.elements.find((e) => e.name === name)?.shapes || [] : [];
       if (!element) return this.bodies.has(name) ? (pose) => pose(name).slice(0, 2) : null;
-      if (shapes.some((shape) => shape.type === 'friction') && !this.run.events.some((e) => e[1] === name && ['break', 'apart', 'open'].includes(e[4]))) return null; // its words say it
+      if (shapes.some((shape) => shape.type === 'friction') && !this.run.events.some((e) => e[1] === name && ['break', 'apart', 'open'].includes(e[4]))) return null; // sliding friction has its own words
       const at = (shapes[0] && shapes[0].at.length ? shapes[0].at : element.at || []), places = shapes[0] && onFirst.has(shapes[0].type) ? at.slice(0, 1) : at;
       return places.length ? (pose) => scaled(places.map((p) => this.placed(p, pose)).reduce(add), 1 / places.length) : null;
     },
@@ -34,7 +34,7 @@
       this.textLayer.append(group);
       return { group, text, sign: null };
     },
-    // The gravest that happened to it up to t, and whether it is so at t; null before.
+    // Returns the most serious event of an element up to t, and whether it still lasts at t; null before the first one.
     happenedTo({ name, told }, t) {
       if (this.bodies.has(name) && !this.byName.has(name)) return told && t >= told.from ? { role: 'tip', word: 'tips' } : null;
       const own = this.run.events.filter((e) => e[1] === name && e[0] <= t), role = grave.find((r) => own.some((e) => e[4] === r));
@@ -67,7 +67,7 @@
       }
     },
   });
-  // Above, beside, below; further out where there is no room.
+  // Candidate shifts of a text: above, next to it, below, then farther away.
   function steps(width) {
     const ways = [];
     for (const dy of [-18, 18, -36, 36, 0, -54, 54, -72, 72, -90, 90]) for (const dx of [0, 0.6, -0.6]) if (dx || dy) ways.push([dx * width, dy]);

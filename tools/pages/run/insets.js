@@ -1,4 +1,4 @@
-// The sheets of a step-lap joint where they overlap, far magnified across the joint line.
+// Draws the sheets of a step-lap joint where they overlap, strongly magnified across the joint line.
 steplap.Inset = (() => {
   const make = steplap.make, { minus, scaled, length, unit, apply, relative } = steplap.geometry;
   const width = 246, height = 112;
@@ -9,7 +9,7 @@ steplap.Inset = (() => {
     const q = ring[(i + 1) % ring.length], r = ring[(i + 2) % ring.length];
     return (q[0] - p[0]) * (r[1] - q[1]) - (q[1] - p[1]) * (r[0] - q[0]) >= -1e-12;
   });
-  // I. E. Sutherland, G. W. Hodgman, Commun. ACM 17 (1974) 32; `knife` convex, counter-clockwise.
+  // Clips a ring by the convex counter-clockwise polygon `knife` (I. E. Sutherland, G. W. Hodgman, Commun. ACM 17 (1974) 32).
   function clipped(ring, knife) {
     let rest = ring;
     for (let i = 0; i < knife.length && rest.length; ++i) {
@@ -27,21 +27,21 @@ steplap.Inset = (() => {
   }
 
   let insets = 0; // ids of clip paths are unique in the page
-  const evenodd = { 'fill-rule': 'evenodd', 'clip-rule': 'evenodd' }; // holes stay holes whichever way they run
+  const evenodd = { 'fill-rule': 'evenodd', 'clip-rule': 'evenodd' }; // holes remain holes in both directions of rotation
 
   return class Inset {
     constructor(run, scene, sheet) {
       Object.assign(this, { run, scene, sheet });
       this.yoke = counterClockwise(sheet.yoke);
       this.limb = counterClockwise(sheet.limb_sheet);
-      this.yokeHoles = sheet.yoke_holes || []; // results of older programs have none
+      this.yokeHoles = sheet.yoke_holes || []; // results of earlier versions have none
       this.limbHoles = sheet.limb_holes || [];
       const relativeReference = relative(scene.reference(sheet.active_part), scene.reference(sheet.limb));
       this.frame(relativeReference);
       this.svg = make('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': `Sheets of ${sheet.name}` });
       this.parts = {};
       for (const name of ['yoke', 'limb', 'overlap']) this.svg.append((this.parts[name] = make('path', { class: name, ...evenodd })));
-      // What carries is the limb's sheet seen through the yoke's, with the holes of both, whatever their shapes.
+      // The overlap is the limb's sheet clipped by the yoke's sheet, with the holes of both.
       const id = `yoke-sheet-${insets++}`;
       this.parts.window = make('path', evenodd);
       this.svg.prepend(make('clipPath', { id }, this.parts.window));
@@ -52,7 +52,7 @@ steplap.Inset = (() => {
       this.margin = run.channel(`${sheet.joint}.margin`);
       this.pressure = run.channel(`${sheet.joint}.p_req`);
     }
-    // Axes along and across the overlap of the reference pose.
+    // Sets axes along and across the overlap in the reference pose.
     frame(pose) {
       const limb = this.limb.map((p) => apply(pose, p));
       const lap = isConvex(this.yoke) ? clipped(limb, this.yoke) : isConvex(limb) ? clipped(this.yoke, limb) : [];

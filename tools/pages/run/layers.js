@@ -1,4 +1,4 @@
-// Switches of the layers of a picture: names, forces, springs … A choice hides its layer in all pictures of a box.
+// Switches for the layers of a picture, such as names, forces or springs. A switch applies to all pictures in a box.
 steplap.layers = (() => {
   const make = steplap.make;
   const all = [['names', 'Names'], ['forces', 'Forces'], ['springs', 'Springs'],

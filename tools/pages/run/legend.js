@@ -1,4 +1,4 @@
-// What the picture says of itself: a bar of its scale, how far motion is magnified, from where it is seen.
+// Legend of the picture: scale bar, magnification of the motion, standpoint.
 (() => {
   const make = steplap.make;
   const strip = 24; // pixels at the foot of the picture
@@ -16,7 +16,7 @@
       for (const name of ['pointerdown', 'dblclick']) this.motionText.addEventListener(name, (event) => event.stopPropagation());
       this.motionText.addEventListener('keydown', (event) => { if (event.key === 'Enter' || event.key === ' ') { event.preventDefault(); toggle(event); } });
     },
-    // True scale and back, by the choice that the page has for it.
+    // Switches between true scale and magnification by the selection field of the page.
     toggleMagnification() {
       const choice = document.getElementById('magnification');
       if (!choice) return;

@@ -1,4 +1,4 @@
-// Long lists, which open: events, extremes of all channels, the model's text; at the end files, programs and digests.
+// Long lists that can be opened: events, extremes of all channels, the model's text, then files, programs and digests.
 steplap.listings = (() => {
   const make = steplap.make, { table, fold } = steplap.tables, { column, instant, roundingIn, isKnown, full, withUnit } = steplap.numbers;
   const tall = (content) => make('div', { class: 'tall', tabindex: '0' }, content);
@@ -18,7 +18,7 @@ steplap.listings = (() => {
   }
 
   const extremeOf = (run, name) => run.summary.extremes[name];
-  // One unit a row: least and largest of all runs.
+  // Returns the row of a channel: minimum and maximum of all runs in one unit.
   function extremeRow(runs, name) {
     const known = runs.map((r) => extremeOf(r, name)), unit = (known.find(Boolean) || { unit: '' }).unit;
     const entries = known.flatMap((e) => (e ? [{ value: e.min, error: e.error_min }, { value: e.max, error: e.error_max }] : [{ value: null }, { value: null }]));
@@ -32,7 +32,7 @@ steplap.listings = (() => {
     }));
     return [make('span', { title: meaning }, name), ...cells];
   }
-  const most = 1000; // rows that a reader could want to see at once
+  const most = 1000; // rows shown at once
   function extremes(box, runs) {
     const names = steplap.data.unique(runs.map((r) => Object.keys(r.summary.extremes)));
     const heads = ['channel', ...runs.flatMap((r) => { const of = runs.length > 1 ? ` ${r.name}` : ''; return [`least${of}`, 'at', `largest${of}`, 'at']; })];
@@ -48,7 +48,7 @@ steplap.listings = (() => {
     box.append(part);
   }
 
-  // What the models were made with: a row a parameter, a column a run.
+  // Table of the parameters: one row per parameter, one column per run.
   function parameters(box, runs) {
     const of = (run) => run.summary.model.parameters || [];
     const names = steplap.data.unique(runs.map((run) => of(run).map((p) => p.name)));
@@ -65,7 +65,7 @@ steplap.listings = (() => {
 
   function models(box, runs) {
     parameters(box, runs);
-    // Each core once, however many runs share it; as an image, so that its style stays its own.
+    // Each core is shown once, also if several runs share it. As an image it keeps its own style.
     const cores = new Map(runs.flatMap((run) => (run.drawing.cores || []).map((core) => [core.svg, core.name])));
     if (cores.size) {
       const images = [...cores].map(([svg, name]) => make('img', { src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`, alt: `Core ${name}: elevation, corner, section, book`, class: 'core' }));
@@ -74,7 +74,7 @@ steplap.listings = (() => {
     for (const run of runs) box.append(fold(`Model of ${run.name}, as it was run`, false, make('pre', { tabindex: '0' }, run.model_text)));
   }
 
-  // Where it comes from: what a reader needs who doubts or repeats.
+  // Origin of the results, for readers who want to check or repeat them.
   function origin(box, runs) {
     const rows = [
       ['title', (r) => r.summary.model.title || '–'],

@@ -1,11 +1,11 @@
-// Loads at the instant shown: a drive's acceleration, speed or travel as an arrow with its size. It is filled while it acts; before and
-// after it is hollow, with the largest size of the run.
+// Draws the loads at the instant shown: acceleration, speed or travel of a drive as an arrow with its value. The arrow is filled while the
+// load acts; before and after it is hollow and shows the largest value of the run.
 (() => {
   const make = steplap.make, { add, minus, scaled, length } = steplap.geometry;
   const g = 9.80665; // m/s²
-  const acting = 0.02; // of the largest size: less is none
-  const least = 0.25; // of the largest arrow: one that is seen
-  const onCentre = 1e-6; // of the machine's size: only at its centre of gravity a body moves as its channels say
+  const acting = 0.02; // of the largest value; smaller ones count as zero
+  const least = 0.25; // of the largest arrow; shortest visible arrow
+  const onCentre = 1e-6; // of the machine's size: only at its centre of gravity the motion of a body equals its channels
 
   const inG = (a) => `${steplap.data.plain(a / g, 2)}\u00a0g`;
   const quantities = {
@@ -13,7 +13,7 @@
     velocity: { channels: ['vx', 'vy'], text: (v) => steplap.data.quantity(v, 'm/s', 3) },
     position: { channels: ['x', 'y'], isFromStart: true, text: (x) => steplap.data.quantity(x, 'm', 3) },
   };
-  // { at(t), peak, isBackward, text } of a drive along one axis against the ground; null where the results do not have it.
+  // Returns { at(t), peak, isBackward, text } of a drive along one axis against the ground; null if the results do not contain it.
   function motionOf(scene, element, shape) {
     const quantity = quantities[element.as], axis = Math.abs((shape.direction || [1, 0])[1]) > 0.7 ? 1 : 0, [driven, base] = shape.at;
     const channel = quantity && scene.run.channel(`${driven.body}.${quantity.channels[axis]}`);
@@ -27,7 +27,7 @@
   }
 
   Object.assign(steplap.Symbols.prototype, {
-    // False if its size is not known.
+    // Draws the load of a drive. Returns false if its value is unknown.
     driven(element, shape, symbol) {
       const { scene } = this, motion = motionOf(scene, element, shape);
       if (!motion) return false;
@@ -53,7 +53,7 @@
       return true;
     },
   });
-  // Closed, so that it can be filled or hollow.
+  // Outline of a broad arrow, closed so that it can be filled.
   function broadArrow(tail, tip, d, u) {
     const n = [-d[1], d[0]], head = minus(tip, scaled(d, 0.9 * u));
     const at = (p, k) => add(p, scaled(n, k * u)).map((v) => v.toFixed(1)).join(' ');

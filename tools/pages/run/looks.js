@@ -1,18 +1,18 @@
-// Draws the parts of bodies that the model describes by [[look]]: wheels, windings, wooden blocks, feet, tanks with their oil, roads and rails.
+// Draws parts of bodies that the model describes by [[look]]: wheels, windings, wooden blocks, feet, tanks with oil, roads and rails.
 (() => {
   const make = steplap.make;
-  const turns = 9; // lines of a winding
-  const strip = 22; // pixels of a road below its surface
-  const apart = 38; // pixels from dash to dash of a road, or from sleeper to sleeper
+  const turns = 9; // lines per winding
+  const strip = 22; // pixels; depth of a road below its surface
+  const apart = 38; // pixels between the dashes of a road or the sleepers of a track
   let clips = 0; // ids of clip paths are unique in the page
 
   const rect = ([x, y], [w, h], style) => make('path', { class: style, d: `M${x - 0.5 * w} ${y - 0.5 * h}h${w}v${h}h${-w}Z` });
   const ring = (points) => 'M' + points.map((p) => p.join(' ')).join('L') + 'Z';
   const disc = ([cx, cy], r, style) => make('circle', { cx, cy, r, class: style });
 
-  // Half the width and height of a part; null: it has the size of its body.
+  // Returns half the width and height of a part; null if the part has the size of its body.
   const halfOf = (look) => (look.radius ? [look.radius, look.radius] : look.size ? look.size.map((v) => 0.5 * v) : null);
-  // Corners of the boxes around a body's parts.
+  // Returns the corners of the boxes around the parts of a body.
   steplap.partsOf = (run, name) => (run.drawing.looks || []).filter((look) => look.body === name).flatMap((look) => {
     const half = halfOf(look);
     return half ? look.at.flatMap(([x, y]) => [[x - half[0], y - half[1]], [x + half[0], y + half[1]]]) : [];
@@ -30,7 +30,7 @@
     },
     foot: (look, at) => [rect(at, look.size, 'foot')],
   };
-  // The wall is a line along the outline, of which only the inner half is seen; the oil fills what is below its level.
+  // A tank: the wall is the inner half of a line along the outline; oil fills the part below its level.
   function tank(look, body) {
     const id = `tank-${clips++}`, low = Math.min(...body.outline.map((p) => p[1])), reach = 2 * body.reach;
     const inside = { 'clip-path': `url(#${id})` }, parts = [make('clipPath', { id }, make('path', { d: ring(body.outline) }))];
@@ -54,9 +54,9 @@
       });
     },
     isTank(name) { return this.looksOf(name).some((look) => look.draw === 'tank'); },
-    // Middles of a body's wheels, in its axes.
+    // Returns the centres of a body's wheels, in its axes.
     wheelsOf(name) { return this.looksOf(name).filter((look) => look.draw === 'wheel').flatMap((look) => look.at); },
-    // Roads and rails of the ground: level strips as wide as the picture.
+    // Builds the roads and rails of the ground: level strips as wide as the picture.
     buildRoads() {
       for (const look of this.looksOf('ground').filter(({ draw }) => draw === 'road' || draw === 'rail')) {
         const band = make('path', { class: look.draw }), line = make('path', { class: `${look.draw} line` });
@@ -72,7 +72,7 @@
       }
     },
     screenOf(name, point, pose) { return this.toScreen(this.placed({ body: name, point }, pose)); },
-    // How far what is followed has driven: the marks of its road pass by.
+    // Returns the distance that the followed vehicle has travelled; the marks of its road move by it.
     passedAt(t) {
       const journey = this.seenFrom === 'ground' ? null : this.journey();
       return journey ? journey.travel(t)[0] : 0;

@@ -1,9 +1,9 @@
-// The moving machine: bodies of one run, drawn from drawing.json and the poses; symbols.js draws what acts on them.
-// Symbols have sizes of the screen (this.u), whatever is looked at how closely; bodies have their own.
+// The moving machine: bodies of one run, drawn from drawing.json and the poses. symbols.js draws elements. Symbols have a constant size on
+// the screen (this.u) at any zoom; bodies have their true size.
 steplap.Scene = (() => {
   const make = steplap.make, { add, minus, scaled, length, apply } = steplap.geometry, Box = steplap.Box;
   const margin = 36; // for symbols, pixels
-  const nearby = 0.75; // of the machine's size: what comes further from it than this leaves the picture
+  const nearby = 0.75; // of the machine's size; bodies farther away leave the picture
   const symbolSize = (width) => Math.min(11, Math.max(7, width / 70)); // pixels
 
   class Body {
@@ -12,7 +12,7 @@ steplap.Scene = (() => {
       this.run = run;
       const names = ['x', 'y', 'theta'].map((c) => run.channel(`${raw.name}.${c}`));
       this.channels = names.every(Boolean) && !raw.fixed ? names : null;
-      // What shows that it has moved; of a circle its centre.
+      // Points whose displacement is shown; of a circle its centre.
       this.points = [...this.outline, ...steplap.partsOf(run, raw.name),
         ...this.polygons.flat(), ...this.circles.map((c) => [c[0], c[1]]), ...this.segments.flatMap((s) => [[s[0], s[1]], [s[2], s[3]]])];
       this.isPoint = !this.points.length;
@@ -26,7 +26,8 @@ steplap.Scene = (() => {
       if (this.run.poseOf) return this.run.poseOf(this.name, t) || this.pose;
       return this.channels ? this.channels.map((c) => c.at(t)) : this.pose;
     }
-    // How far from a straight way at the speeds that are written, m: what is drawn between two rows far apart is no motion.
+    // Returns the largest deviation, m, from straight motion between two rows at the recorded speeds. Where it is large, the motion between
+    // the rows is not known.
     guessAt(t) {
       const [x, y] = this.channels || [], speeds = ['vx', 'vy'].map((c) => this.run.channel(`${this.name}.${c}`));
       if (!x || !speeds.every(Boolean)) return 0;
@@ -49,7 +50,7 @@ steplap.Scene = (() => {
       this.limbs = new Map();
       this.yokes = new Set();
       for (const e of run.drawing.elements) if (e.kind === 'step_lap_joint') { this.limbs.set(e.limb, e); this.yokes.add(e.active_part); }
-      // Results of older programs have a symbol in place of shapes.
+      // Results of earlier versions have a symbol instead of shapes.
       this.elements = run.drawing.elements.filter((e) => e.symbol !== 'hidden').map((e) => (e.shapes ? e : { ...e, shapes: [{ type: e.symbol, at: e.at, direction: e.direction, quantity: 'force' }] }));
       this.byName = new Map(run.drawing.elements.map((e) => [e.name, e]));
       this.view = { zoom: 1, shift: [0, 0] };
@@ -75,22 +76,22 @@ steplap.Scene = (() => {
       if (!this.ground.isPoint) this.ground.extend(own, [0, 0, 0]);
       if (own.isEmpty) return box.isEmpty ? box.take([-1, -1]).take([1, 1]) : box;
       if (box.isEmpty) return own;
-      // Long tracks and floors are shown as far as something happens on them.
+      // Long tracks and floors are shown only near places where something happens.
       const reach = 0.35 * Math.max(...box.span), low = [...box.low], high = [...box.high];
       for (const end of [own.low, own.high]) box.take(end.map((v, i) => Math.min(Math.max(v, low[i] - reach), high[i] + reach)));
       return box;
     }
 
-    // Is what would be drawn at t between rows, and further from them than one sees through?
+    // Returns true if the pose at t lies between rows and may be visibly wrong.
     isGuessed(t) { return [...this.bodies.values()].some((body) => body.guessAt(t) > 0.05 * this.size); }
 
     // --- where it is seen from ------------------------------------------------------------------------
-    // Poses at some times of the run, for whatever depends on where things come.
+    // Poses at some times of the run, for decisions that depend on where bodies will be.
     samples() {
       const count = this.bodies.size > 200 ? 8 : 60;
       return Array.from({ length: count + 1 }, (_, k) => this.look((this.run.end * k) / count, this.seenFrom, this.magnification));
     }
-    // Chooses what is drawn; what it needs of the plane.
+    // Chooses standpoint and magnification, and the part of the plane that this needs.
     choose(seenFrom, magnification) {
       this.seenFrom = seenFrom; this.magnification = magnification;
       this.poses = this.samples();
@@ -102,19 +103,19 @@ steplap.Scene = (() => {
           body.extend(own, pose(body.name));
           for (const corner of [own.low, own.high]) box.take(near.nearest(corner));
         }
-      // Room for springs that carry from below.
+      // Space for springs that carry a body from below.
       const isBelow = (s) => s.type === 'spring' && this.isTied(s) && this.isHeld(s.at[1].body) && Math.abs(s.direction[1]) > 0.7;
       const isCarried = this.elements.some((e) => e.shapes.some((s) => isBelow(s) && !this.wheelsOf(s.at[1].body).length));
       if (isCarried) box.take([box.middle[0], box.low[1] - 0.12 * this.size]);
       this.trails = null;
       return box;
     }
-    // Room for symbols at the left and right, and above and below: a drive's arrow stands before all that it drives.
+    // Space for symbols at the left and right, above and below. The arrow of a drive is in front of all bodies that it drives.
     margins(width) {
       const drives = this.elements.flatMap((e) => e.shapes.filter((s) => s.type === 'arrow' && s.style !== 'load')), isAlong = (i) => drives.some((s) => Math.abs((s.direction || [1, 0])[i]) > 0.3);
       return [0, 1].map((i) => (isAlong(i) ? Math.max(margin, 5.5 * symbolSize(width)) : margin));
     }
-    // Room for a box of `span` about `middle` on a picture of the given size in pixels.
+    // Fits a box of `span` around `middle` into a picture of the given size in pixels.
     fit(middle, span, width, tallest, margins = this.margins(width)) {
       this.width = width;
       this.u = symbolSize(width);
@@ -127,7 +128,7 @@ steplap.Scene = (() => {
       this.fitSymbols();
       this.spreadNames();
     }
-    // As another picture of the same machine: the same part of the plane, names at the same places.
+    // Uses the part of the plane and the places of names of another picture of the same machine.
     fitLike(other) {
       this.choose(other.seenFrom, other.magnification);
       for (const name of ['width', 'u', 'height', 'middle', 'fittedScale']) this[name] = other[name];
@@ -146,7 +147,7 @@ steplap.Scene = (() => {
     }
     get midHeight() { return 0.5 * (this.height - this.footHeight()); }
     toScreen(p) { return [this.width / 2 + (p[0] - this.centre[0]) * this.scale, this.midHeight - (p[1] - this.centre[1]) * this.scale]; }
-    // A pixel of the screen in the plane.
+    // Converts a point of the screen to the plane.
     toPlane(x, y) { return [this.centre[0] + (x - this.width / 2) / this.scale, this.centre[1] - (y - this.midHeight) / this.scale]; }
 
     // --- building -----------------------------------------------------------------------------------
@@ -172,13 +173,13 @@ steplap.Scene = (() => {
       for (const corners of body.polygons) shapes.push(path(corners, true));
       for (const [x, y, r, isRing] of body.circles) {
         shapes.push(make('circle', { cx: x, cy: y, r, class: isRing ? 'ring' : 'round' }));
-        if (!isRing && body !== this.ground) shapes.push(make('path', { d: `M${x} ${y}l${r} 0`, class: 'spoke' })); // shows it turn
+        if (!isRing && body !== this.ground) shapes.push(make('path', { d: `M${x} ${y}l${r} 0`, class: 'spoke' })); // makes the rotation visible
       }
       for (const [from, to] of this.strutsOf(body)) shapes.push(make('path', { d: `M${from.join(' ')}L${to.join(' ')}`, class: 'strut' }));
       for (const [x0, y0, x1, y1, thickness] of body.segments) shapes.push(this.bar([x0, y0], [x1, y1], thickness));
       return shapes;
     }
-    // From the outline to the places outside it where contacts and joints act: outriggers, feet, brackets.
+    // Struts from the outline to places outside it at which contacts and joints act: outriggers, feet, brackets.
     strutsOf(body) {
       if (body.outline.length < 3) return [];
       const struts = [], least = 0.01 * body.reach;
@@ -186,21 +187,21 @@ steplap.Scene = (() => {
         for (const shape of e.shapes)
           for (const place of shape.at) {
             if (place.body !== body.name || shape.direction === undefined || steplap.forms.isInside(body, place.point)) continue;
-            if (shape.type === 'contact' && place !== shape.at[0]) continue; // a line goes on and on
+            if (shape.type === 'contact' && place !== shape.at[0]) continue; // a line has no end
             if (!['contact', 'spring'].includes(shape.type) || (shape.type === 'spring' && this.isTied(shape))) continue;
             const from = steplap.forms.nearest(body, place.point), far = length(minus(place.point, from));
             if (far > least && far < 2 * body.reach && !struts.some(([, to]) => length(minus(to, place.point)) < least)) struts.push([from, place.point]);
           }
       return struts;
     }
-    // A tank: what stands in it is seen before it.
+    // Returns true for a tank, which is drawn behind the bodies inside it.
     isAround(body) {
       if (body.outline.length < 3 || this.bodies.size > 40) return false;
       const box = new Box(), isWithin = (inner) => [0, 1].every((i) => inner.low[i] > box.low[i] && inner.high[i] < box.high[i]);
       body.extend(box, body.pose);
       return [...this.bodies.values()].some((other) => { const inner = new Box(); other.extend(inner, other.pose); return other !== body && !other.isPoint && isWithin(inner); });
     }
-    // A spring along an axis whose ends lie together at rest: it is drawn from outline to outline (springs.js).
+    // Returns true for a spring along an axis whose ends coincide at rest; it is drawn between outlines (springs.js).
     isTied(shape) {
       const [a, b] = shape.at.map((place) => this.placed(place, (name) => this.reference(name)));
       const d = shape.direction && steplap.geometry.turn(shape.direction, this.reference(shape.at[1].body)[2]);
@@ -217,11 +218,11 @@ steplap.Scene = (() => {
       const group = make('g', { class: isGround ? 'floor' : ['body', ...this.kindsOf(body)].join(' '), 'data-body': body.name },
         make('title', {}, body.label || body.name), ...this.shapesOf(body), ...this.looksShapes(body));
       (isGround ? this.groundLayer : this.bodyLayer).append(group);
-      // Where the body's geometry does not say where its mass is.
+      // The centre of gravity is marked if the geometry of the body does not show it.
       const isShown = isGround || body.fixed || body.isLookAlone || body.is_outline_given || body.circles.length || body.polygons.length;
       const centre = isShown ? null : this.centreMark(body);
       if (!isGround) this.addGhost(body);
-      if (!isGround && !body.isLookAlone) this.addName(body); // wheels look as what they are
+      if (!isGround && !body.isLookAlone) this.addName(body); // wheels need no name
       const since = joint && this.run.events.find((e) => e[1] === joint.name && (e[4] === 'slip' || e[4] === 'apart'));
       this.updaters.push((t, pose) => {
         const [x, y, angle] = pose(body.name), c = this.scale * Math.cos(angle), s = this.scale * Math.sin(angle);
@@ -232,7 +233,7 @@ steplap.Scene = (() => {
         if (joint) group.classList.toggle('slipped', Boolean((since && t >= since[0]) || this.run.modeAt(joint.name, t) >= 2));
       });
     }
-    // Classes of a body for the style.
+    // Style classes of a body.
     kindsOf(body) {
       const { name } = body, kinds = { fixed: body.fixed, unrecorded: body.isUnrecorded, around: this.isAround(body),
         limb: this.limbs.has(name), yoke: this.yokes.has(name), tank: this.isTank(name) };
@@ -285,7 +286,7 @@ steplap.Scene = (() => {
     }
   }
 
-  // The same scale for all that are of like size, and the same part of the plane where they are at the same place.
+  // Gives all pictures of similar size the same scale, and the same part of the plane if they show the same place.
   Scene.fitAll = (scenes, seenFrom, magnification, widths, tallest) => {
     const boxes = scenes.map((scene) => scene.choose(seenFrom, magnification));
     const whole = boxes.reduce((a, b) => a.joined(b));

@@ -1,5 +1,4 @@
-// The page: one clock for the picture, the timeline and the curves. What the first screen shows is made first; the rest
-// follows once the browser has painted it.
+// The page: one clock for picture, timeline and curves. The first screen is built first; the rest follows once the browser has painted it.
 (() => {
   const make = steplap.make, runs = steplap.data.runs, at = (id) => document.getElementById(id);
   const end = Math.max(...runs.map((r) => r.end)), isOne = runs.length === 1, horizon = steplap.overview.horizonOf(runs);
@@ -7,7 +6,7 @@
   let t = 0, last = null, plots = null, isUntouched = true;
   const scenes = [], insets = [];
 
-  // Colours of paper while `action` runs: files that are saved are black on white whatever the screen is.
+  // Uses the colours of paper while `action` runs: saved files are black on white whatever the screen shows.
   steplap.onPaper = (action) => {
     document.documentElement.classList.add('paper');
     try { return action(); } finally { document.documentElement.classList.remove('paper'); }
@@ -51,7 +50,7 @@
     if (runs.some((run) => run.drawing.sheets.length)) help.splice(1, 0, 'Limbs have an orange edge once their joint has slipped.');
     at('picture-help').append(make('summary', {}, 'How to read the picture'), make('p', { class: 'note' }, help.join(' ')));
   }
-  // The motion at the chosen speed, as it is drawn now.
+  // Saves the motion at the chosen speed as an animation.
   async function saveAnimation(scene, button) {
     const before = t, label = button.textContent;
     setPlaying(false);
@@ -73,8 +72,8 @@
     }
   }
   const isPrinted = window.matchMedia('print');
-  // What is left of the first screen for the pictures, once all else has its place. Below 900 pixels parts stand under each
-  // other (page.css), and a picture takes a part of the screen.
+  // Returns the height left for the pictures on the first screen. Below 900 pixels of width the parts are stacked (page.css), and a picture
+  // gets a share of the screen.
   function tallest() {
     if (window.innerWidth <= 900) return Math.max(220, Math.min(0.5 * window.innerHeight, 700));
     const heightOf = (id) => (at(id).hidden ? 0 : at(id).getBoundingClientRect().height);
@@ -89,7 +88,7 @@
   function fit() {
     if (isPrinted.matches) return;
     const widths = scenes.map((s) => Math.max(240, s.svg.parentNode.clientWidth));
-    put(widths, 260); // so that what is around it can be measured
+    put(widths, 260); // so that the parts around it can be measured
     timeline.build();
     put(widths, tallest());
   }
@@ -117,19 +116,19 @@
   const decimals = Math.max(0, 4 - Math.ceil(Math.log10(end) - 1e-9));
   function show(time) {
     t = Math.min(Math.max(time, 0), end);
-    at('now').textContent = `t = ${t.toFixed(t > 0 ? Math.max(decimals, Math.min(6, 2 - Math.floor(Math.log10(t)))) : decimals)} s`; // three digits, however long the run
+    at('now').textContent = `t = ${t.toFixed(t > 0 ? Math.max(decimals, Math.min(6, 2 - Math.floor(Math.log10(t)))) : decimals)} s`; // at least three digits for long and short runs
     for (const scene of scenes) scene.show(t);
     for (const inset of insets) inset.show(t);
     timeline.show(t);
     if (plots) plots.show(t);
   }
-  // What a reader asks for.
+  // Goes to an instant requested by the reader.
   function go(time) { isUntouched = false; setPlaying(false); show(time); }
   function setPlaying(isPlaying) {
     at('play').replaceChildren(steplap.icon(isPlaying ? 'pause' : 'play'), isPlaying ? ' Pause' : ' Play');
     at('play').setAttribute('aria-pressed', String(isPlaying));
     last = null;
-    // The page opens at its worst instant, as a film shows its best picture: it plays from the beginning.
+    // The page opens at the worst instant; playing starts from the beginning.
     if (isPlaying && (t >= timeline.end || isUntouched)) show(0);
     if (isPlaying) { isUntouched = false; requestAnimationFrame(frame); }
   }
@@ -140,7 +139,7 @@
     last = now;
     if (t >= timeline.end) setPlaying(false); else requestAnimationFrame(frame);
   }
-  // The axis of time ends with the last event that counts, or with the run.
+  // The time axis ends with the last main event, or with the run.
   function setHorizon(wanted) {
     timeline.end = wanted;
     at('time').max = String(wanted);
@@ -173,7 +172,7 @@
     let seen = [document.documentElement.clientWidth, window.innerHeight];
     window.addEventListener('resize', () => {
       const now = [document.documentElement.clientWidth, window.innerHeight];
-      // On a telephone the height changes while one scrolls: that alone redraws nothing there.
+      // On a telephone the height changes during scrolling, which needs no redrawing.
       if (isPrinted.matches || (now[0] === seen[0] && (now[1] === seen[1] || now[0] < 900))) return;
       seen = now;
       fit(); show(t);
@@ -181,7 +180,7 @@
   }
 
   // --- curves, tables --------------------------------------------------------------------------------
-  // From a bar to its curve and its instant.
+  // Shows the curve and the instant of a bar.
   function jump(utilisation, run) {
     if (utilisation.at !== null && utilisation.at !== undefined) go(utilisation.at);
     const plot = plots && utilisation.channel ? plots.figureWith(utilisation.channel, run) : null;
@@ -190,7 +189,7 @@
     for (const p of plots.plots) p.box.classList.toggle('chosen', p === plot);
     plot.box.scrollIntoView({ block: 'center', behavior: window.matchMedia('(prefers-reduced-motion: reduce)').matches ? 'auto' : 'smooth' });
   }
-  // Events of which element the curves show.
+  // Chooses the element whose events the curves show.
   function chooseEvents() {
     const names = steplap.data.unique(runs.map((run) => run.events.filter((e) => steplap.signs.has(e[4])).map((e) => e[1])));
     const elements = names.slice(0, 100).map((name) => [`of ${name}`, name]);
@@ -213,7 +212,7 @@
     at('plots').hidden = !plots.plots.length;
     window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { plots.build(); show(t); });
   }
-  // Paper has what the page tells: results are opened, and closed again if they were.
+  // Opens the results before printing and closes them afterwards if they were closed.
   function listenToPrint() {
     let opened = [];
     window.addEventListener('beforeprint', () => {
@@ -239,8 +238,8 @@
     document.body.setAttribute('data-ready', 'true');
   }
 
-  // The worst instant; without limits that of the first event that is told of. Where the motion about it is not written (machine.js), the
-  // nearest instant that is.
+  // Returns the instant at which the page opens: the worst one; without limits that of the first event in the story. If the motion around
+  // it was not recorded (machine.js), the nearest recorded instant.
   function opening() {
     const told = runs.flatMap((run) => steplap.overview.of(run).story.map((entry) => entry.from)), wanted = worst ?? (told.length ? Math.min(...told) : 0);
     const guessed = scenes.find((scene) => scene.isGuessed(wanted));
@@ -266,6 +265,6 @@
   fit();
   show(opening());
   steplap.page = { scenes, view, show: go, time: () => t, timeline, shown: performance.now() };
-  // After the browser has painted: a frame to paint in, and what comes after it.
+  // Runs after the browser has painted: one frame to paint, then a task.
   requestAnimationFrame(() => setTimeout(buildRest));
 })();

@@ -1,10 +1,10 @@
-// What is marked on curves: limits as lines, the largest value of each curve as a dot with its value. Texts that would lie
-// on another, or beyond the figure, go elsewhere; where there is no place the dot stays alone, with its value in the title.
+// Marks on curves: limits as lines, the largest value of each curve as a dot with its value. Texts that would overlap or leave the figure
+// are moved; without room only the dot is drawn, with its value in the title.
 steplap.marks = (() => {
   const make = steplap.make, { one, onScale, isKnown } = steplap.numbers;
   const most = 4; // dots with a value in one figure
 
-  // Limits of the curves of a figure, in their own unit: [{ value, text }].
+  // Returns the limits for the curves of a figure in their own unit: [{ value, text }].
   function limitsOf(series) {
     const found = [];
     for (const s of series) {
@@ -15,10 +15,10 @@ steplap.marks = (() => {
     }
     return found;
   }
-  // Limits that the axis is stretched for: those that are not far beyond what is reached.
+  // Returns true for limits that extend the axis: those not far beyond the values reached.
   const isNear = (value, low, high) => Math.abs(value) <= 1.6 * Math.max(Math.abs(low), Math.abs(high)) && (value >= 0 ? high > 0 || value <= high : low < 0);
 
-  // The end of a channel that is worst: that which a criterion looks at, the lowest of a margin, otherwise the largest.
+  // Returns the decisive extreme of a channel: the one that a criterion limits, the minimum of a margin, otherwise the larger one.
   function worstEnd(s, e) {
     const u = steplap.overview.of(s.run).utilisations.find((each) => each.channel === s.name && isKnown(each.value));
     if (u && (u.value === e.min || u.value === e.max)) return u.value === e.min ? 'min' : 'max';
@@ -31,11 +31,11 @@ steplap.marks = (() => {
     const key = worstEnd(s, e);
     return isFinite(e[key]) && isKnown(e[`t_${key}`]) && e.max > e.min ? { s, t: e[`t_${key}`], value: e[key], error: e[`error_${key}`] } : null;
   }
-  // A text of 11 pixels, with some room.
+  // Width of a text of 11 pixels, with some margin.
   const widthOf = (text) => 6.9 * text.length + 6;
   const meet = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
 
-  // `place`: { x(t), y(value), left, top, right, bottom } in pixels of `svg`. `colourOf(series)` as CSS knows it.
+  // Draws the marks. `place` is { x(t), y(value), left, top, right, bottom } in pixels of `svg`; `colourOf(series)` returns a CSS colour.
   function draw(svg, { drawn: series, limits, scale }, place, colourOf) {
     svg.replaceChildren();
     const taken = [];

@@ -1,20 +1,20 @@
-// Numbers for people: three digits, four where the first is a 1, and never more than the error allows. An error is
-// written only where it reaches a digit that is shown, or the limit. All digits stay in `full`, for title and files.
+// Formats numbers for readers: three digits, four if the first is a 1, and never more than the error allows. An error is written only if it
+// affects a displayed digit or reaches the limit. All digits are kept in `full`, for titles and files.
 steplap.numbers = (() => {
   const { scaleFor, pretty } = steplap.data;
   const space = '\u00a0';
 
-  // Digits after the point that a number of this size is shown with.
+  // Returns the number of decimals for a number of this size.
   function decimalsOf(size) {
     if (!(size > 0) || !isFinite(size)) return 0;
     const exponent = Math.floor(Math.log10(size) + 1e-12), digits = size / 10 ** exponent < 2 ? 4 : 3;
     return Math.max(0, digits - 1 - exponent);
   }
-  // The place of an error's first digit; of 0.0096, which is written as 0.01, that of the 1.
+  // Returns the decimal place of an error's first digit, after rounding up: 0.0096 is written as 0.01.
   const placeOf = (error) => -Math.floor(Math.log10(error) + 0.0223); // log10(1 / 0.95): beyond 9.5 it is rounded up to 10
   const signed = (text) => text.replace('-', '−');
 
-  // Without zeros that say nothing; large ones in groups of three.
+  // Omits trailing zeros; groups the digits of large numbers by three.
   function fixed(value, decimals) {
     const size = Math.abs(value);
     if (size >= 1e7 || (size > 0 && decimals > 7)) return signed(value.toExponential(2));
@@ -24,7 +24,7 @@ steplap.numbers = (() => {
     if (size >= 1e4) text = text.replace(/\B(?=(\d{3})+(?!\d))/g, space);
     return signed(text);
   }
-  // Rounded up to one digit: an error is never written smaller than it is.
+  // Rounds up to one digit, so that an error is never written smaller than it is.
   function errorText(error) {
     const step = 10 ** -placeOf(error), digits = Math.ceil(error / step - 1e-9);
     return fixed(digits * step, Math.max(0, placeOf(error)));
@@ -32,7 +32,7 @@ steplap.numbers = (() => {
   const isKnown = (value) => value !== null && value !== undefined && !Number.isNaN(value);
   const isError = (error) => isKnown(error) && isFinite(error) && error > 0;
 
-  // A number that is already in its unit, with so many decimals at most.
+  // Formats a number already in its unit, with at most the given number of decimals.
   function measured(value, decimals, error, limit) {
     if (!isKnown(value)) return '–';
     if (!isFinite(value)) return value > 0 ? '∞' : '−∞';
@@ -44,9 +44,8 @@ steplap.numbers = (() => {
     return `${fixed(step > 1 ? Math.round(value / step) * step : value, Math.max(0, places))} ± ${errorText(error)}`;
   }
 
-  // What is rounding beside the largest values of this unit in a run. Lengths are looked at in parts of a millimetre, so
-  // that half a micrometre of a machine that is larger than a hand is nothing; 1e-10 rad are a hundredth of a micrometre
-  // over a hundred metres.
+  // Values of a unit below which they are only rounding: 1e-9 of the largest one in the run. For lengths 5e-6 of it, at most half a
+  // micrometre; for angles at least 1e-10 rad, which are 0.01 µm over 100 m.
   const roundings = new WeakMap();
   function largestOf(run, unit) {
     let largest = 0;
@@ -64,16 +63,16 @@ steplap.numbers = (() => {
     }
     return known.get(unit);
   }
-  // Of a whole comparison: the least that is something in any of its runs.
+  // Rounding of a comparison: the smallest of all its runs.
   const roundingIn = (runs, unit) => Math.min(...runs.map((run) => roundingOf(run, unit)));
-  // True if a channel is nothing but rounding from beginning to end.
+  // Returns true if a channel is only rounding during the whole run.
   function isRounding(run, name) {
     const e = run.summary.extremes[name];
     if (!e || !isKnown(e.min) || !isKnown(e.max)) return false;
     return Math.max(Math.abs(e.min), Math.abs(e.max)) <= Math.max(roundingOf(run, e.unit || ''), Math.min(e.error_min || 0, e.error_max || 0));
   }
 
-  // Several numbers of one unit, one prefix for all: { unit, texts }. `entries`: { value, error, limit }.
+  // Formats several numbers with one unit and prefix: { unit, texts }. `entries`: { value, error, limit }.
   function column(entries, unit, rounding = 0) {
     const sizes = entries.map((e) => Math.abs(e.value)).filter((v) => isFinite(v) && v > rounding);
     const largest = sizes.length ? Math.max(...sizes) : 0;
@@ -87,37 +86,37 @@ steplap.numbers = (() => {
     return { unit: scale.unit, factor: scale.factor, texts };
   }
   const withUnit = (text, unit) => (unit && text !== '–' ? (text.includes('±') ? `(${text})${space}${unit}` : `${text}${space}${unit}`) : text);
-  // One number with its unit.
+  // Formats one number with its unit.
   function one(value, unit, { error, limit, rounding = 0 } = {}) {
     const found = column([{ value, error, limit }], unit, rounding);
     return withUnit(found.texts[0], found.unit);
   }
-  // The same in a unit that is given: { factor, unit } of an axis.
+  // Formats a number in a given unit { factor, unit }, such as that of an axis.
   function onScale(value, scale, { error, rounding = 0 } = {}) {
     if (isKnown(value) && Math.abs(value) <= rounding) return withUnit('0', scale.unit);
     return withUnit(measured(isKnown(value) ? value * scale.factor : value, decimalsOf(Math.abs(value) * scale.factor), isError(error) ? error * scale.factor : error), scale.unit);
   }
-  // An instant to a ten-thousandth of the run, or as well as it is known; none where it might be anywhere in a fiftieth of the
-  // run, as that of the largest value of a curve that is flat there.
+  // Formats an instant to a ten-thousandth of the run or to its error. Omits it if the error exceeds 2 % of the run, as for the maximum of
+  // a flat curve.
   function instant(t, end, error) {
     if (!isKnown(t) || (isError(error) && error > end / 50)) return '–';
     const isShort = end < 0.01, decimals = Math.max(0, 4 - Math.ceil(Math.log10((isShort ? 1000 : 1) * end) - 1e-9));
     const k = isShort ? 1000 : 1;
     return withUnit(measured(k * t, decimals, isError(error) ? k * error : error), isShort ? 'ms' : 's');
   }
-  // A share of a limit as per cent. 100 % is written only of what is at its limit.
+  // Formats a share of a limit as a percentage. "100 %" is only written for values at the limit.
   function percent(share, error) {
     if (!isKnown(share)) return '–';
     if (!isFinite(share)) return '∞';
-    if (share >= 1000) return `>${space}1000${space}%`; // nothing is left that holds: the number is none (run/utilisation.h)
-    const isAtLimit = Math.abs(share - 1) < 1e-9; // friction that slips, but for rounding
+    if (share >= 1000) return `>${space}1000${space}%`; // there is no capacity left, so the number has no meaning (run/utilisation.h)
+    const isAtLimit = Math.abs(share - 1) < 1e-9; // sliding friction, up to rounding
     const value = isAtLimit ? 100 : 100 * share;
     let decimals = value < 9.95 ? 1 : 0;
     while (!isAtLimit && Number(value.toFixed(decimals)) === 100 && decimals < 3) ++decimals;
     if (!isAtLimit && Number(value.toFixed(decimals)) === 100) return `${share < 1 ? '<' : '>'}${space}100${space}%`;
     return withUnit(measured(value, decimals, isError(error) ? 100 * error : error, 100), '%');
   }
-  // All digits: as the program wrote them with their error, or as they are.
+  // Returns all digits: as the program wrote them with their error, or unchanged.
   function full(value, unit, text) {
     if (!isKnown(value)) return '';
     return text ? signed(text) : `${signed(String(value))}${unit ? ` ${unit}` : ''}`;

@@ -1,5 +1,5 @@
-// What the first screen tells of a run, as the summary says it. Results of programs that wrote no overview get what their
-// events and their judgement tell by themselves, and say so: nothing is judged here.
+// Contents of the first screen, as given in the summary. For results of earlier versions without overview only events and judgement are
+// shown, with a note: nothing is judged here.
 steplap.overview = (() => {
   const sentences = {
     hold: 'All criteria of the model are met.',
@@ -32,25 +32,25 @@ steplap.overview = (() => {
     }
     return found.get(run);
   }
-  // { word, name }: what the badge says, and the class that paints it.
+  // Returns { word, name }: the text of the badge and its style class.
   function badgeOf(run) {
     const { verdict, is_judged: isJudged } = of(run);
     if (isJudged !== false && verdict in words) return { word: words[verdict], name: verdict };
     return { word: isJudged !== false && verdict ? String(verdict).toUpperCase() : 'NO CRITERIA', name: 'none' };
   }
-  // The worst instant of the run that is nearest to its limits, or furthest beyond; null if none has one.
+  // Returns the worst instant of the run that is nearest to or farthest beyond its limits; null if none has one.
   function worstOf(runs) {
     const shareOf = (o) => { const u = o.utilisations.find((each) => each.is_judged) || o.utilisations[0]; return u ? u.share ?? Infinity : 0; };
     const known = runs.map(of).filter((o) => o.worst_instant !== null && o.worst_instant !== undefined);
     return known.length ? known.reduce((a, b) => (shareOf(b) > shareOf(a) ? b : a)).worst_instant : null;
   }
-  // The next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten: ends of axes of time.
+  // Rounds up to 1, 1.5, 2, 2.5, 3, 4, 5, 6 or 8 times a power of ten, for ends of time axes.
   function nice(t) {
     const power = 10 ** Math.floor(Math.log10(t));
     return Number((power * [1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10].find((k) => k * power >= 0.999999 * t)).toPrecision(3));
   }
-  // Where the axis of time may end: shortly after the last event and worst instant, if most of the run comes later; otherwise, as
-  // without events, at the end of the runs.
+  // Returns the end of the time axis: shortly after the last event and worst instant if most of the run follows them, otherwise the end of
+  // the runs.
   function horizonOf(runs) {
     const isCounted = (e) => e[0] > 0 && steplap.signs.has(e[4]);
     const end = Math.max(...runs.map((run) => run.end)), events = runs.flatMap((run) => run.events.filter(isCounted).map((e) => e[0]));

@@ -1,4 +1,4 @@
-// Time histories in dygraphs: zoom and pan linked over all of them and with the time of the drawing.
+// Time histories in dygraphs. Zoom and pan are linked between all figures and with the time of the drawing.
 steplap.Plots = (() => {
   const make = steplap.make;
   const curves = 7; // colours of curves: --curve-1 to --curve-7 in page.css
@@ -70,7 +70,7 @@ steplap.Plots = (() => {
       this.mark();
       this.show(this.owner.t);
     }
-    // Shows the run `to` where `from` was shown. False if it lacks a channel: then the figure has to be made anew.
+    // Shows run `to` instead of `from`. Returns false if it lacks a channel; then the figure must be rebuilt.
     replaceRun(from, to) {
       if (!this.series.every((s) => s.run !== from || to.channel(s.name))) return false;
       this.runs = this.runs.map((r) => (r === from ? to : r));
@@ -78,7 +78,7 @@ steplap.Plots = (() => {
       this.limits = steplap.marks.limitsOf(this.drawn);
       return true;
     }
-    // Draws what the series hold now.
+    // Redraws the present values of the series.
     refresh() {
       if (!this.graph) return;
       const [low, high] = this.owner.rangeOf(this.figure, this.owner.full);
@@ -93,10 +93,9 @@ steplap.Plots = (() => {
       const { values, step } = steplap.axes.ticks(low, high, most);
       return values.map((v) => ({ v, label: steplap.axes.label(v, step) }));
     }
-    // As wide as the longest number along the axis.
+    // Width of the longest number along the axis.
     labelWidth([low, high]) { return 24 + 7.4 * Math.max(3, ...this.ticker(low, high, 6).map((tick) => tick.label.length)); }
-    // What the other runs show of this figure has the same scale; limits nearby are in the picture; there is room for the
-    // values of the extremes.
+    // Value range of a figure: that of all runs together, with nearby limits and space for the labels of extremes.
     valueRange() {
       let [low, high] = this.owner.rangeOf(this.figure, this.owner.window);
       if (!(low <= high)) return [0, 1];
@@ -110,7 +109,7 @@ steplap.Plots = (() => {
       this.graph.updateOptions({ dateWindow: window, valueRange, axes: { y: { axisLabelWidth: this.labelWidth(valueRange) } } });
     }
     escaped(text) { return text.replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`); }
-    // One row for each time of any series; gaps are bridged by dygraphs.
+    // Returns one row per time of any series; dygraphs bridges the gaps.
     rows(factor) {
       const list = this.drawn, times = list[0].channel.times, value = (s, i) => { const v = s.sign * s.channel.value(i) * factor; return isFinite(v) ? v : NaN; };
       if (list.every((s) => s.channel.times === times)) return Array.from(times, (t, i) => [t, ...list.map((s) => value(s, i))]);
@@ -133,22 +132,22 @@ steplap.Plots = (() => {
         this.values.append(make('span', { class: 'key', title: s.run.meaning(s.name) }, make('svg', { viewBox: '0 0 30 9' }, line), `${this.keyText(s)} `, s.readout || ''));
       }
       const [low, high] = this.owner.rangeOf(this.figure, this.owner.full), far = this.limits.filter(({ value }) => !steplap.marks.isNear(value, low, high));
-      const texts = steplap.data.unique([far.map((f) => f.text.replace('−', ''))]); // one on either side of zero is told of once
+      const texts = steplap.data.unique([far.map((f) => f.text.replace('−', ''))]); // equal limits on both sides of zero are labelled once
       if (far.length) this.values.append(make('span', { class: 'key far' }, `${texts.join(', ')}: beyond this picture`));
     }
-    // Whether events of an element are marked: of the chosen one, or of those whose channels the figure shows.
+    // Returns true if events of an element are marked: the chosen one, or those whose channels the figure shows.
     isMarked(element) {
       const { eventsOf } = this.owner;
       if (eventsOf === 'own') return this.series.some((s) => s.name.startsWith(`${element}.`));
       return eventsOf === 'all' || eventsOf === `of ${element}`;
     }
-    // Instants that are marked by lines, with their style and their words.
+    // Returns the instants marked by lines, with style and text.
     eventLines() {
       const of = (run) => run.events.filter(([, who, , , role]) => styleOf(role) && this.isMarked(who));
       const words = (run, [, who, what, text]) => `${who} ${what} at ${text}${this.runs.length > 1 ? `, ${run.name}` : ''}`;
       return this.runs.flatMap((run) => of(run).map((e) => ({ t: e[0], style: styleOf(e[4]), text: words(run, e) })));
     }
-    // Names the events whose line is under the pointer, `x` pixels from the left of the figure.
+    // Names the events whose line is near the pointer, `x` pixels from the left of the figure.
     nameEvents(x) {
       const reach = 4, mostNamed = 4; // pixels; lines of text
       const near = this.eventLines().filter(({ t }) => Math.abs(this.graph.toDomXCoord(t) - x) <= reach).map((line) => line.text);
@@ -158,7 +157,7 @@ steplap.Plots = (() => {
       this.eventName.style.left = `${Math.min(x + 8, 0.5 * this.area.clientWidth)}px`;
     }
     drawEvents(context, rect, g) {
-      const lines = this.eventLines(), isDense = lines.length > 120; // a hatching of lines would hide the curves
+      const lines = this.eventLines(), isDense = lines.length > 120; // too many lines would hide the curves
       for (const { t, style } of lines) {
         const x = g.toDomXCoord(t);
         if (x < rect.x || x > rect.x + rect.w) continue;
@@ -174,7 +173,7 @@ steplap.Plots = (() => {
       steplap.marks.draw(this.overlay, this, { x: (t) => g.toDomXCoord(t), y: (v) => g.toDomYCoord(v * this.scale.factor), left: area.x, right: area.x + area.w, top: area.y, bottom: area.y + area.h },
         (s) => `var(--${s.colour})`);
     }
-    // The curves as they are shown, in their own units: a column each, a row for each time that any of them has.
+    // Returns the displayed curves in their own units as CSV: one column per curve, one row per time of any of them.
     csv() {
       const [from, to] = this.graph.xAxisRange(), list = this.series.filter((s) => !s.isBound || s.sign > 0);
       const cell = (text) => (/[",\n\r]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
@@ -219,7 +218,7 @@ steplap.Plots = (() => {
       this.figures = steplap.figures.of(steplap.data.runs);
       document.getElementById('event-key').textContent = `Vertical lines: ${eventStyles.map((s, i) => `${s.name} (${['solid', 'dashed', 'dotted'][i]})`).join(', ')}. A dot marks the worst value of a curve: the lowest of a margin, the largest of others.`;
     }
-    // Least and largest value that any run shows in a figure within a window of time, the extremes between samples, too.
+    // Returns the minimum and maximum of any run in a figure within a time window, including extremes between samples.
     rangeOf(figure, [from, to]) {
       let low = Infinity, high = -Infinity;
       const take = (v) => { if (isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); } };
@@ -249,13 +248,13 @@ steplap.Plots = (() => {
       for (const plot of this.plots) plot.draw();
     }
     add(channel) { this.extra.push({ name: channel, title: '', channels: [channel.replace(/[*?]/g, '?')], bounds: [] }); this.build(); }
-    // The figure that shows a channel of a run; made if there is none.
+    // Returns the figure that shows a channel of a run, which is created if there is none.
     figureWith(channel, run) {
       const has = (p) => p.graph && p.runs.includes(run) && p.drawn.some((s) => s.name === channel && s.run === run);
       if (!this.plots.some(has) && run.channel(channel)) this.add(channel);
       return this.plots.find(has) || this.plots.find((p) => p.series.some((s) => s.name === channel));
     }
-    // Zoom and pan of one are those of all.
+    // Applies the zoom and pan of one figure to all.
     follow(source, range) {
       if (this.isFollowing || (range[0] === this.window[0] && range[1] === this.window[1])) return;
       this.zoom([...range]);
@@ -267,7 +266,7 @@ steplap.Plots = (() => {
       this.isFollowing = false;
     }
     zoomOut() { this.zoom([...this.full]); }
-    // What is printed are drawings of the same window: canvases would be pictures of the screen's size.
+    // Draws the time window for printing; canvases would print at the resolution of the screen.
     preparePrint() { for (const plot of this.plots) plot.drawForPaper(); }
     show(t) { this.t = t; for (const plot of this.plots) plot.show(t); }
   };

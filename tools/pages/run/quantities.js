@@ -1,5 +1,5 @@
-// What a run comes to, as numbers with their names: criteria, step-lap joints, friction, forces. Tables of one run and the
-// table that compares several are both made of it.
+// Results of a run as named numbers: criteria, step-lap joints, friction, forces. Used by the tables of one run and by the comparison of
+// several.
 steplap.quantities = (() => {
   const { isKnown, full } = steplap.numbers;
   const kinds = [[/contact/, 'contacts'], [/^spring/, 'springs'], [/^bushing$/, 'bushings'], [/^limit$/, 'stops'], [/^rope|wound/, 'ropes'], [/^distance|^rod/, 'rods'], [/^tie$/, 'ties'],
@@ -8,7 +8,7 @@ steplap.quantities = (() => {
   const extreme = (run, name) => run.summary.extremes[name];
   const larger = (e) => (Math.abs(e.min) > Math.abs(e.max) ? 'min' : 'max');
 
-  // A number of the summary with its error and all its digits. `t`: key of its instant.
+  // Returns a number of the summary with its error and all digits. `t` is the key of its instant.
   function number(entry, key, unit, t) {
     return { value: entry[key], error: entry[`error_${key}`], unit, full: full(entry[key], unit, entry[`text_${key}`]),
       at: t && isKnown(entry[t]) ? entry[t] : null, atError: t ? entry[`error_${t}`] : null, atFull: t ? full(entry[t], 's', entry[`text_${t}`]) : '' };
@@ -21,7 +21,7 @@ steplap.quantities = (() => {
     return list.map((c) => ({ name: c.name, asked: c.criterion.replace(/<=/g, '≤').replace(/>=/g, '≥').replace(/\^2/g, '²').replace(/\^3/g, '³'), reason: c.reason, doubt: c.doubt, outcome: outcome(c), where: c.where,
       limit: c.limit, ...number({ ...c, error_value: c.error }, 'value', c.unit, 't') }));
   }
-  // Channels that the criteria and the shares of limits ask about, with their limits: name -> [{ limit, isBoth }].
+  // Returns the channels limited by criteria and utilisations, with their limits: name -> [{ limit, isBoth }].
   function limitsOf(run) {
     const found = new Map();
     const add = (name, limit, isBoth) => {
@@ -48,7 +48,7 @@ steplap.quantities = (() => {
       return { name: e.name, slips, slide: largest(run, `${e.name}.slide`), left: number(extreme(run, `${e.name}.slide`), 'final', 'm') };
     });
   }
-  // Of everything that transmits a force or a couple: the largest of the run.
+  // Returns the largest force or couple of every element that transmits one.
   function forces(run) {
     const limits = limitsOf(run), found = [];
     for (const e of run.drawing.elements)
@@ -60,7 +60,7 @@ steplap.quantities = (() => {
       }
     return found;
   }
-  // "Forces of contacts", "Forces of contacts, springs and joints": what is there.
+  // "Forces of contacts", "Forces of contacts, springs and joints": names the kinds that occur.
   function headingOf(list) {
     const names = steplap.data.unique([list.map((f) => f.kind)]);
     const what = list.every((f) => f.unit === 'N m') ? 'Couples' : 'Forces';

@@ -1,4 +1,4 @@
-// Tables of results: those of one run, and one that sets several beside each other.
+// Tables of results: those of one run, and the comparison of several.
 steplap.results = (() => {
   const make = steplap.make, { table, fold } = steplap.tables, { column, one, instant, roundingOf, roundingIn, isKnown, withUnit, percent, full } = steplap.numbers;
   const q = steplap.quantities;
@@ -6,7 +6,7 @@ steplap.results = (() => {
   const cell = (text, number) => ({ text, value: number.value, full: number.full });
 
   // --- one run -------------------------------------------------------------------------------------
-  // Of what is nothing but rounding there is no instant.
+  // The instant is omitted for values that are only rounding.
   const at = (run, n) => (isKnown(n.at) && !(Math.abs(n.value) <= roundingOf(run, n.unit)) ? { text: instant(n.at, run.end, n.atError), full: n.atFull } : '');
   function criteria(run) {
     const list = q.criteria(run);
@@ -19,7 +19,7 @@ steplap.results = (() => {
     const hasDoubt = list.some((c) => c.doubt);
     return fold('Criteria', true, table(['criterion', 'asked', 'result', 'value', 'limit', 'at', ...(hasDoubt ? ['doubt'] : [])], hasDoubt ? rows : rows.map((r) => r.slice(0, 6)), [3, 4, 5]));
   }
-  // Columns of numbers, one unit each: { heads, cells[row][column] }.
+  // Returns columns of numbers with one unit each: { heads, cells[row][column] }.
   function columnsOf(run, rows) {
     const heads = rows[0].map(([name]) => name), cells = rows.map(() => []);
     rows[0].forEach(([, { unit }], k) => {
@@ -37,7 +37,7 @@ steplap.results = (() => {
     return fold('Step-lap joints', true, make('p', { class: 'note' }, 'Least margin, largest pressure needed, distances slid and area lost at the end.'),
       table(['joint', 'verdict', ...heads], rows, [2, 3, 4, 5, 6, 7, 8]), ...edges(run, list), ...shared(list));
   }
-  // Where limbs were drawn towards their yokes and sheet edges can bear.
+  // Joints whose limbs were drawn towards their yokes and whose sheet edges may carry load.
   function edges(run, list) {
     const bearing = list.filter((j) => j.raw.largest_edge_load !== undefined);
     if (!bearing.length) return [];
@@ -48,7 +48,7 @@ steplap.results = (() => {
       raw.crushed_edges === undefined || raw.crushed_edges === null ? '–' : { text: raw.crushed_edges ? 'crushed' : 'borne', class: raw.crushed_edges ? 'reject' : 'met' }]);
     return [make('h4', {}, 'Sheet edges along the mitres: largest line load, of all sheets at a corner'), table(['joint', ...heads, 'at', 'margin', 'edges'], rows, [1, 2, 3, 4, 5])];
   }
-  // What bears beside a joint: its margin is of its own share.
+  // Elements that carry load in parallel with a joint, whose margin refers to its own share.
   function shared(list) {
     return list.filter((j) => j.raw.shared_with).map(({ name, raw }) => make('p', { class: 'note' },
       `${name}: the margin is that of its own share. Beside it bear ${raw.shared_with.map((s) => s.element + (s.largest_force === null ? '' : ` (up to ${one(s.largest_force, 'N')})`)).join(', ')}` +
@@ -61,7 +61,7 @@ steplap.results = (() => {
     const { heads, cells } = columnsOf(run, list.map((f) => [['largest slide', f.slide], ['left at the end', f.left]]));
     return fold('Friction', true, table(['contact', 'it', heads[0], 'at', heads[1]], list.map((f, i) => [f.name, slipText(f.slips), cells[i][0], at(run, f.slide), cells[i][1]]), [2, 3, 4]));
   }
-  const most = 60; // rows of forces; all are among the extremes
+  const most = 60; // rows of forces; all values are among the extremes
   function forces(run) {
     const all = q.forces(run), list = all.slice(0, most);
     if (!list.length) return [];
@@ -77,7 +77,7 @@ steplap.results = (() => {
   }
 
   // --- several runs --------------------------------------------------------------------------------
-  // Rows of all runs under the keys that they share: { group, name, unit, isTime, isShare, entries }.
+  // Rows of all runs under their common keys: { group, name, unit, isTime, isShare, entries }.
   function compared(runs) {
     const rows = new Map();
     const add = (k, group, name, n, more = {}) => {
@@ -95,15 +95,15 @@ steplap.results = (() => {
     });
     return [...rows.values()];
   }
-  // Of two runs what the second has more than the first; of more what lies between the least and the largest.
-  // Two runs are compared by sizes if the criterion limits the size.
+  // Returns the difference of two runs (second minus first) or the range of several. Two runs are compared by absolute value if the
+  // criterion limits it.
   function differenceOf({ entries, isSize }) {
     const values = entries.map((e) => (e && isKnown(e.value) && isFinite(e.value) ? (isSize ? Math.abs(e.value) : e.value) : null));
     if (values.length === 2) return values.includes(null) ? null : values[1] - values[0];
     const known = values.filter((v) => v !== null);
     return known.length > 1 ? Math.max(...known) - Math.min(...known) : null;
   }
-  // "+3 kN", and "3 kN more" where sizes are compared.
+  // "+3 kN", or "3 kN more" if absolute values are compared.
   function changeText(text, value, { isSize }, isTwo) {
     if (!isTwo || text === '0') return text;
     if (isSize) return `${text.replace('−', '')} ${value > 0 ? 'more' : 'less'}`;

@@ -1,25 +1,25 @@
-// The sheet that is signed, one page of A4: heading, verdict, parts, room for two signatures. Runs, load cases, static proofs and
-// assessments state their parts; the builder lays them out and shortens them until the page holds them.
+// The sheet to be signed, one page of A4: heading, verdict, parts, space for two signatures. Runs, load cases, static proofs and
+// assessments provide their parts; this builder lays them out and shortens them until they fit the page.
 steplap.sheet = (() => {
   const make = steplap.make;
-  // mm: A4 without the margins of page.css; three more of the height stay free, because paper rounds otherwise than the screen.
+  // mm: A4 less the margins of page.css. Three more of the height are kept free, because printing rounds differently from the screen.
   const width = 186, height = 270;
 
   function short(text, limit) {
-    const letters = [...String(text)]; // code points: a letter of two UTF-16 units is not cut in half
+    const letters = [...String(text)]; // code points, so that a letter of two UTF-16 units is not split
     return letters.length > limit ? `${letters.slice(0, limit - 1).join('')}…` : letters.join('');
   }
   const part = (title, ...content) => make('div', {}, make('h2', {}, title), ...content);
-  // Lines that do not fit are counted. The page of an assessment shows them behind its sheet; a sheet alone refers to the report.
+  // Lines that do not fit are counted. The page of an assessment shows them after the sheet; a single sheet refers to the report.
   const elsewhere = document.body.classList.contains('assessment') ? 'on the sheets behind' : 'in the report';
   const rest = (all, kept, what) => (all > kept ? [make('p', { class: 'more' }, `${all - kept} more ${what} ${elsewhere}.`)] : []);
   const list = (texts) => make('ul', {}, ...texts.map((t) => make('li', {}, t)));
   const bullets = (texts, kept, limit, what) => [list(texts.slice(0, kept).map((t) => short(t, limit))), ...rest(texts.length, kept, what)];
-  // A line to be filled in by hand where nothing is stated.
+  // Text, or a blank line to be filled in by hand.
   const orBlank = (text, limit) => (text ? short(text, limit) : make('span', { class: 'blank' }));
   const named = (file, sha256) => `${file} (SHA-256 ${String(sha256 || 'unknown').slice(0, 16)}…)`;
 
-  // The machine of a run as it stands at time t, seen from the usual body or from another.
+  // Draws the machine of a run at time t, seen from the usual body or from `seenFrom`.
   function drawing(run, t, columns = 1, seenFrom = '') {
     const scene = new steplap.Scene(run), { moved, story } = steplap.overview.of(run);
     scene.setMoved(moved, story);
@@ -39,24 +39,24 @@ steplap.sheet = (() => {
     place.style.fontSize = `${size}pt`;
     place.replaceChildren(make('h1', {}, content.title), make('p', {}, content.about), verdictLine(content), ...content.parts,
       signatures(content.signed));
-    for (const t of place.querySelectorAll('table')) t.classList.remove('cards'); // paper is no telephone, also when printed from one
+    for (const t of place.querySelectorAll('table')) t.classList.remove('cards'); // the layout for narrow screens is not used, even if a telephone prints
   }
-  // Lays out contentOf(keep). `most`: what is kept if there is room, by name; `size` are points of the letters. `cuts`: [name, what is kept
-  // then], in the order in which room is made; `dear`: the name whose cuts are taken back first. Returns what was kept.
+  // Lays out contentOf(keep) and returns what was kept. `most` contains by name what is kept if there is room; `size` is the font size in
+  // points. `cuts` lists [name, reduced value] in the order in which room is made; `dear` is the name whose cuts are undone first.
   function fit(contentOf, { most, cuts, dear = '' }) {
     const place = document.getElementById('sheet');
     place.classList.add('measured');
     const measure = () => (width * place.getBoundingClientRect().height) / place.getBoundingClientRect().width;
     const isFitting = (keep) => { fill(place, keep.size, contentOf(keep)); return measure() <= height; };
-    const cutBy = (count) => ({ ...most, ...Object.fromEntries(cuts.slice(0, count)) }); // the last of a name counts
-    // The fewest cuts that suffice, found by bisection.
+    const cutBy = (count) => ({ ...most, ...Object.fromEntries(cuts.slice(0, count)) }); // the last entry of a name applies
+    // Finds the smallest sufficient number of cuts by bisection.
     let few = 0, many = cuts.length;
     while (few < many) {
       const middle = (few + many) >> 1;
       if (isFitting(cutBy(middle))) many = middle; else few = middle + 1;
     }
     let keep = cutBy(few);
-    // Cuts without need are taken back, the last first.
+    // Undoes cuts that are not needed, the last ones first.
     const undone = cuts.slice(0, few).map(([what], i) => [what, cutBy(i)[what]]).reverse();
     for (const [what, before] of [...undone.filter(([what]) => what === dear), ...undone.filter(([what]) => what !== dear)])
       if (isFitting({ ...keep, [what]: before })) keep = { ...keep, [what]: before };
@@ -65,7 +65,7 @@ steplap.sheet = (() => {
     place.classList.remove('measured');
     return keep;
   }
-  // Cuts that make letters smaller and leave nothing out: below the smallest the sheet continues on a second page.
+  // Cuts that only reduce the font size. If the smallest size is not sufficient, the sheet continues on a second page.
   const smaller = (from, to) => Array.from({ length: Math.round((from - to) / 0.25) }, (_, k) => ['size', from - 0.25 * (k + 1)]);
   return { short, part, rest, list, bullets, orBlank, named, drawing, fit, smaller };
 })();

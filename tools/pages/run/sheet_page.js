@@ -1,4 +1,4 @@
-// The page of a sheet alone: what it shows depends on which results the page holds.
+// The page of a single sheet; its contents depend on the results in the page.
 (() => {
   const { loadCases, runs } = steplap.data, { given, statics } = steplap.assessment;
   const sheet = given || statics.length ? steplap.assessmentSheet() : loadCases ? steplap.casesSheet(loadCases) : steplap.runSheet(runs[0]);

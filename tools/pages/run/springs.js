@@ -1,14 +1,14 @@
-// Where springs are drawn: at their ends and beside each other. One that acts along an axis, its ends at the same place,
-// stands between the outline of its body and what lies beyond: the other body's outline, or an anchor.
+// Places springs in the picture: at their ends, and next to each other. A spring that acts along an axis and whose ends coincide is drawn
+// between the outline of its body and the next outline beyond it, or an anchor.
 (() => {
   const { add, minus, scaled, dot, length, unit, seenIn } = steplap.geometry;
   const across = (d) => [-d[1], d[0]];
   const flipped = (d) => [d[0], -d[1]];
   const path = (points) => 'M' + points.map((p) => `${p[0].toFixed(2)} ${p[1].toFixed(2)}`).join('L');
-  const least = 3, free = 4; // lengths in units of symbols: of one that is seen; of one that ends at an anchor
+  const least = 3, free = 4; // in units of symbols: shortest visible spring; length of a spring that ends at an anchor
   const lanes = [0, 2, -2, 4, -4, 6, -6];
 
-  // Distance between two stretches of lines that are nearly parallel; infinite for others, which only cross.
+  // Returns the distance between two nearly parallel line segments; infinite for others, which can only cross.
   function gapBetween([a, b], [c, d]) {
     const e = unit(minus(b, a)), f = unit(minus(d, c));
     if (Math.abs(dot(e, f)) < 0.8) return Infinity;
@@ -42,24 +42,24 @@
       for (let k = 0; k <= count; ++k) this.taken.push(add(a, scaled(minus(b, a), k / count)));
     },
     isClear(a, b) { return this.stretches.every((other) => gapBetween([a, b], other) >= 1.7 * this.u); },
-    // One that has a length of its own: beside those that lie there.
+    // Places a spring with a length of its own next to the springs that are already there.
     chooseLane(spring, a, b) {
       const n = unit(across(minus(a, b))), shifted = (k) => [a, b].map((p) => add(p, scaled(n, k * this.u)));
       spring.lane = lanes.find((k) => this.isClear(...shifted(k))) || 0;
       this.occupy(...shifted(spring.lane));
     },
-    // One whose ends lie together. On wheels it stands on their axle.
+    // Places a spring whose ends coincide. If the body has wheels, the spring stands on their axle.
     tieSpring(spring, a, d, rest) {
       if (this.tieToAxle(spring, a, d, rest)) return;
       const { scene } = this, [placeA, placeB] = spring.shape.at, { u } = this, found = [];
       const upright = Math.abs(d[1]) > Math.abs(d[0]), down = upright ? (d[1] > 0 ? 1 : -1) : d[0] > 0 ? -1 : 1;
       const bodyA = scene.body(placeA.body), bodyB = scene.body(placeB.body), n = across(d);
-      // Stops stand in the middle of the edge.
+      // Stops are drawn in the middle of the edge.
       const isStopped = scene.elements.some((e) => e.shapes.some((s) => s.type === 'rail' && s.style === 'limit' && s.at[0].body === placeA.body));
       lanes.forEach((lane, order) => {
         for (const side of [down, -down]) {
           const start = add(a, scaled(n, lane * u)), e = scaled(d, side), out = this.leaves(bodyA, rest, start, e, false);
-          if (out === null && order > 0) continue; // beside its body
+          if (out === null && order > 0) continue; // it would be next to its body
           const from = add(start, scaled(e, out || 0)), hit = placeB.body === 'ground' ? null : this.leaves(bodyB, rest, add(from, scaled(e, 0.8 * u)), e, true);
           const isMet = hit !== null && hit > 0.8 * u && hit < 30 * u, to = add(from, scaled(e, isMet ? hit + 0.8 * u : free * u));
           const isSeen = to[0] > 3 && to[1] > 3 && to[0] < scene.width - 3 && to[1] < scene.height - scene.footHeight() - 3;
@@ -84,12 +84,13 @@
       this.occupy(from, to);
       return true;
     },
-    // Pixels from a place of the screen along e to where a line leaves the body for good, or first meets it; null: never.
+    // Returns the distance in pixels from a place on the screen along e to where a line finally leaves the body, or first meets it; null if
+    // never.
     leaves(body, pose, place, e, isFirst) {
       const found = steplap.forms.crossings(body, pose(body.name), this.scene.toPlane(...place), flipped(e));
       return found.length ? (isFirst ? found[0] : found[found.length - 1]) * this.scene.scale : null;
     },
-    // On the screen, at a and at b.
+    // Returns the ends of the spring on the screen, at a and at b.
     springEnds(spring, pose) {
       const { shape, tied, lane } = spring;
       if (tied) return [this.screen(tied.a, pose), this.screen(tied.b, pose)];
@@ -98,17 +99,17 @@
       const shift = scaled(unit(across(minus(a, b))), (lane || 0) * this.u);
       return [add(a, shift), add(b, shift)];
     },
-    // What one ends at where there is no outline: a plate, hatched if it stands still.
+    // Draws the end of a spring that meets no outline: a plate, hatched if it is fixed.
     anchor(spring, a, b) {
       if (!spring.tied || !spring.tied.isAnchored) return '';
       const { u } = this, e = unit(minus(b, a)), n = scaled(across(e), 0.9 * u);
       const strokes = this.scene.isHeld(spring.tied.b.body) ? [-1, -0.4, 0.2, 0.8].map((k) => { const p = add(b, scaled(n, k)); return path([p, add(p, add(scaled(e, 0.6 * u), scaled(n, 0.5)))]); }).join('') : '';
       return path([add(b, n), minus(b, n)]) + strokes;
     },
-    // Pixels along what is drawn, at rest, whatever the zoom.
+    // Points along the spring at rest, in pixels, at any zoom.
     occupied() { return this.drawnAt.map((p) => this.scene.toScreen(p)); },
 
-    // The stops of a slide, where they touch the outline of what they stop.
+    // Draws the stops of a slide where they touch the outline of the body that they stop.
     stops(element, shape) {
       const { scene } = this, symbol = this.piece(element, { class: 'symbol stop' }), body = scene.body(shape.at[0].body);
       const rest = (name) => scene.reference(name);
@@ -129,14 +130,14 @@
         symbol.setAttribute('d', text || 'M0 0');
       });
     },
-    // A straight lower edge (of an upright slide: the left one) to put rollers under.
+    // Returns the straight lower edge (of an upright slide: the left one) under which rollers are drawn.
     hasEdge(shape) {
       const { scene } = this, body = scene.body(shape.at[0].body), d = this.direction(shape, (name) => scene.reference(name)), isUpright = Math.abs(d[1]) > Math.abs(d[0]);
       const points = body.outline.map((point) => steplap.geometry.apply(body.pose, point)), height = (p) => (isUpright ? p[0] : p[1]), way = (p) => (isUpright ? p[1] : p[0]);
       const low = Math.min(...points.map(height)), near = 0.02 * body.reach, at = points.filter((p) => height(p) < low + near).map(way), span = Math.max(...at) - Math.min(...at);
       return points.some((p, i) => { const q = points[(i + 1) % points.length]; return height(p) < low + near && height(q) < low + near && Math.abs(way(p) - way(q)) > 0.9 * span && span > 0; });
     },
-    // A body with an outline that slides: rollers under its edge, on a line that is hatched where it stands still.
+    // Draws rollers under the edge of a sliding body with an outline, on a line that is hatched where it is fixed.
     rollers(element, shape) {
       const { scene } = this, rest = (name) => scene.reference(name), [placeA, placeB] = shape.at, body = scene.body(placeA.body);
       const line = this.piece(element, { class: 'symbol track' }), rolls = [0, 1].map(() => this.piece(element, { class: 'dot roller' }, scene.elementLayer, 'circle'));
@@ -160,8 +161,8 @@
         line.setAttribute('d', text);
       });
     },
-    // Ground edges that wheels roll on are hatched on their far side, as far as the picture shows them. A flat road is drawn by its line as well: it
-    // has no ends that would be part of the machine.
+    // Ground edges on which wheels roll are hatched on their far side, as far as they are visible. A flat road is also drawn by its line,
+    // because its ends are not part of the machine.
     roads() {
       const { scene } = this, done = new Set();
       for (const element of scene.elements)

@@ -6,22 +6,22 @@
 (() => {
   const { minus, add, scaled, dot, length, apply, relative, turn } = steplap.geometry;
   const largestTurn = (3 * Math.PI) / 180;
-  const drawnTurn = 0.1; // rad, of what is magnified: joints of what turns further would gape
+  const drawnTurn = 0.1; // rad; largest rotation that is magnified, because joints would gape
   const drawnMotion = 0.05; // of the machine's diagonal: largest magnified motion
   const drawnSpring = 1 / 3; // of the drawn length of a spring
-  const tiedSpring = 0.036; // of the machine's size: drawn length of a spring whose ends lie together (springs.js)
-  const drawnClearance = 0.8; // of a clearance: nothing is drawn through a wall that it does not touch
-  const most = 500; // what would need more is no motion, but how far contacts give way
-  const steps = 120; // at which a run is looked at
+  const tiedSpring = 0.036; // of the machine's size: drawn length of a spring whose ends coincide (springs.js)
+  const drawnClearance = 0.8; // of a clearance, so that no body is drawn through a wall that it does not touch
+  const most = 500; // larger factors would show the compliance of contacts instead of motion
+  const steps = 120; // times at which a run is examined
   const alongside = '~alongside'; // the standpoint that moves along with a vehicle
-  // Of shapes that hold the vehicle to the ground along its way, which it then does not leave behind.
+  // Kinds of shapes that hold the vehicle to the ground along its path, so that it does not drive away.
   const holding = new Set(['pin', 'weld', 'rod', 'rope', 'bushing']);
   const rolling = new Set(['contact', 'edge_touch', 'faces', 'touch', 'friction', 'arrow']); // between ground and a vehicle without drive
   const times = (scene) => Array.from({ length: steps + 1 }, (_, k) => (scene.run.end * k) / steps);
   const wayOf = (scene, name, t) => minus(scene.poseAt(name, t).slice(0, 2), scene.reference(name).slice(0, 2));
 
-  // The vehicle that a drive translates: { name, carried, travel(t) }, or null. What it leaves behind is drawn as if it came along, but a
-  // road on which wheels roll passes.
+  // Returns the vehicle that a drive translates: { name, carried, travel(t) }, or null. Bodies that it leaves behind are drawn as if they
+  // moved along, except a road on which wheels roll.
   function drivenBy(scene, drive, shape) {
     const name = shape.at[0].body, moving = [...scene.bodies.values()].filter((b) => b.moves && b.name !== name);
     const apart = new Map(moving.map((b) => [b.name, 0])), gone = new Map(apart);
@@ -49,7 +49,7 @@
     const isOnRoad = scene.elements.some((e) => e.shapes.some(rolls));
     return isVehicle ? { name, carried: isOnRoad ? null : carried, travel: (t) => scaled(axis, dot(axis, wayOf(scene, name, t))) } : null;
   }
-  // Bodies that drive away together without a drive: the ground is drawn as it passes.
+  // Returns bodies that drive away together without a drive; the ground is then drawn moving past.
   function rollingAway(scene) {
     const moving = [...scene.bodies.values()].filter((b) => b.moves);
     const isOnGround = (e) => e.shapes.some((s) => s.at.some((p) => scene.isHeld(p.body)) && s.at.some((p) => !scene.isHeld(p.body)));
@@ -64,7 +64,7 @@
     const largest = moving.reduce((a, b) => (b.reach > a.reach ? b : a));
     return far > scene.size && apart < 0.5 * scene.size ? { name: largest.name, carried: null, travel } : null;
   }
-  // Bodies and the bodies that they are tied to, by all elements.
+  // Returns for each body the bodies to which elements connect it.
   function neighboursOf(scene) {
     const found = new Map(['ground', ...scene.bodies.keys()].map((name) => [name, new Set()]));
     for (const e of scene.run.drawing.elements) {
@@ -79,7 +79,8 @@
   };
 
   Object.assign(steplap.Scene.prototype, {
-    // { name, carried, travel } of what drives away, or null. `carried` is null if all that is seen passes the ground.
+    // Returns { name, carried, travel } of the vehicle that drives away, or null. `carried` is null if everything visible moves relative to
+    // the ground.
     journey() {
       if (this.foundJourney !== undefined) return this.foundJourney;
       this.foundJourney = null;
@@ -94,7 +95,7 @@
       return this.foundJourney;
     },
     usualStandpoint() { return this.run.drawing.seen_from || (this.journey() ? alongside : 'ground'); },
-    // Standpoints to choose from: [name, text].
+    // Standpoints offered to the reader: [name, text].
     standpoints() {
       const journey = this.journey(), bodies = [...this.bodies.keys()].slice(0, 40);
       return [...(journey ? [[alongside, `alongside ${journey.name}`]] : []), ...['ground', ...bodies].map((name) => [name, name])];
@@ -103,7 +104,7 @@
       if (seenFrom === alongside) return this.journey() ? `moves along with ${this.journey().name}` : '';
       return seenFrom && seenFrom !== 'ground' ? `seen from ${seenFrom}` : '';
     },
-    // Body that each body stands on or hangs from: its neighbour nearest to the ground, of several the largest.
+    // Returns for each body the one that carries it: the neighbour nearest to the ground, the largest of several.
     carriers() {
       if (this.foundCarriers) return this.foundCarriers;
       const neighbours = neighboursOf(this), level = new Map([['ground', 0]]), carriers = new Map();
@@ -131,13 +132,13 @@
       if (body.turned === undefined) body.turned = Math.max(...times(this).map((t) => Math.abs(body.poseAt(t)[2] - body.pose[2])));
       return body.turned;
     },
-    // Pose of a body at time t in the ground's axes, without the travel of what is followed.
+    // Returns the pose of a body at time t in ground axes, without the travel of the followed vehicle.
     followedPose(name, t, seenFrom) {
       const pose = this.poseAt(name, t), journey = seenFrom === 'ground' ? null : this.journey();
       if (!journey || (journey.carried && !journey.carried.has(name))) return pose;
       return [...minus(pose.slice(0, 2), journey.travel(t)), pose[2]];
     },
-    // Pose of a body relative to what carries it, at rest and at time t.
+    // Returns the pose of a body relative to its carrier, at rest and at time t.
     onCarrier(name, t, seenFrom) {
       const carrier = this.carrierOf(name);
       const followed = (who) => this.followedPose(who, t, seenFrom);
@@ -145,7 +146,7 @@
     },
 
     // --- how far motion is magnified ----------------------------------------------------------------------
-    // Largest displacement of a body's points and largest turn, relative to what carries it.
+    // Largest displacement of a body's points and largest rotation, relative to its carrier.
     motionOf(body, seenFrom) {
       let displacement = 0, turned = 0;
       if (body.isUnrecorded) return { displacement: Infinity, turned };
@@ -156,7 +157,7 @@
       }
       return { displacement, turned };
     },
-    // How far a body may move to either side before it meets what carries it.
+    // Returns the distance by which a body may move to either side before it meets its carrier.
     clearanceOf(body) {
       const carrier = this.body(this.carrierOf(body.name)), rest = relative(carrier.pose, body.pose);
       let least = Infinity;
@@ -170,7 +171,7 @@
       }
       return Math.max(least, 0);
     },
-    // Drawn length of the shortest spring under a body that the ground carries.
+    // Returns the drawn length of the shortest spring under a body that the ground carries.
     shortestSpring(body) {
       if (this.carrierOf(body.name) !== 'ground') return Infinity;
       const rest = (name) => this.reference(name), isUnder = (s) => s.type === 'spring' && s.at[0].body === body.name;
@@ -178,7 +179,7 @@
       const lengthOf = ({ at: [a, b] }) => length(minus(this.placed(a, rest), this.placed(b, rest)));
       return Math.min(Infinity, ...springs.map((s) => Math.max(lengthOf(s), tiedSpring * this.size)));
     },
-    // Factor that a body's motion allows: the largest of 1, 2, 5, 10 … within the bounds above; Infinity for one that does not move.
+    // Returns the largest factor of 1, 2, 5, 10 … that the motion of a body permits within the bounds above; Infinity if it does not move.
     factorAllowed(body, seenFrom) {
       const { displacement, turned } = this.motionOf(body, seenFrom);
       if (turned > largestTurn) return 1;
@@ -187,7 +188,7 @@
       const wanted = Math.min(bound / Math.max(displacement, 1e-12), drawnTurn / Math.max(turned, 1e-12));
       return wanted > most ? Infinity : wanted >= 1 ? rounded(wanted) : 1;
     },
-    // Name of each body with its factor. Bodies on one carrier share the smallest; one beside bodies whose motion is not known has 1.
+    // Returns the factor of each body by name. Bodies on one carrier share the smallest factor; it is 1 next to bodies with unknown motion.
     usualFactors(seenFrom) {
       if (!this.factors) this.factors = new Map();
       if (this.factors.has(seenFrom)) return this.factors.get(seenFrom);
@@ -207,7 +208,7 @@
     factorOf(name, seenFrom, magnification) {
       return magnification === 'usual' ? this.usualFactors(seenFrom).get(name) ?? 1 : magnification;
     },
-    // Poses as drawn at time t.
+    // Returns the drawn poses at time t.
     look(t, seenFrom, magnification) {
       const cache = new Map(), compose = (a, b) => [...apply(a, b), a[2] + b[2]];
       const inGround = (name) => {
@@ -227,13 +228,13 @@
         return seen.get(name);
       };
     },
-    // Where a body would be drawn if it stood on its carrier as at the start.
+    // Returns the drawn pose that a body would have if it were at its start pose on its carrier.
     ghostPose(name, pose) {
       const carrier = this.carrierOf(name), rest = relative(this.reference(carrier), this.reference(name)), on = pose(carrier);
       return [...apply(on, rest), on[2] + rest[2]];
     },
   });
-  // The choices of a magnification and of a standpoint, of all pages: `scenes` are shown together.
+  // Selection fields for magnification and standpoint; `scenes` are shown together.
   steplap.pictureChoices = (scenes, factor, from) => {
     const standpoint = scenes[0].usualStandpoint(), option = ([value, text]) => steplap.make('option', { value }, text);
     from.replaceChildren(...scenes[0].standpoints().map(option));

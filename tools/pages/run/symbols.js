@@ -1,21 +1,21 @@
-// What acts on the bodies: springs, ropes, contacts with their half-planes, joints, motors, loads, forces with their
-// values. Each type of shape of drawing.json (mbd/run/sketch.h) has one method of Symbols.
+// Draws the elements between bodies: springs, ropes, contacts with their half-planes, joints, motors, loads, forces with their values. Each
+// type of shape in drawing.json (mbd/run/sketch.h) has one method of Symbols.
 steplap.Symbols = (() => {
   const make = steplap.make, { turn, add, minus, scaled, dot, length, unit, seenIn } = steplap.geometry;
   const path = (points, isClosed) => 'M' + points.map((p) => `${p[0].toFixed(2)} ${p[1].toFixed(2)}`).join('L') + (isClosed ? 'Z' : '');
   const across = (d) => [-d[1], d[0]];
-  const flipped = (d) => [d[0], -d[1]]; // a direction of the plane on the screen, and back
+  const flipped = (d) => [d[0], -d[1]]; // converts a direction between plane and screen
   const along = (a, b, k) => add(a, scaled(minus(b, a), k));
   const arrowHead = (tip, d, size) => path([add(tip, add(scaled(d, -size), scaled(across(d), 0.45 * size))), tip, add(tip, add(scaled(d, -size), scaled(across(d), -0.45 * size)))], true);
 
   class Symbols {
     constructor(scene) {
       this.scene = scene;
-      this.wanted = []; // values that want room
+      this.wanted = []; // values to be placed
       this.shownValues = { shown: 0, all: 0 };
-      this.springs = []; // { element, shape } and where they are drawn
-      this.pieces = new Map(); // what is drawn of an element, by its name
-      this.taken = []; // pixels along what is drawn, at rest
+      this.springs = []; // { element, shape } with the place at which it is drawn
+      this.pieces = new Map(); // drawn parts of an element, by its name
+      this.taken = []; // occupied pixels at rest
       this.pins = scene.elements.flatMap((e) => e.shapes.filter((s) => s.type === 'pin' && s.at.length > 1));
       this.planes = (scene.run.drawing.planes || []).map((plane) => ({ ...plane, feet: [] }));
       for (const element of scene.elements)
@@ -37,7 +37,7 @@ steplap.Symbols = (() => {
     get u() { return this.scene.u; }
     screen(place, pose) { return this.scene.toScreen(this.scene.placed(place, pose)); }
     ends(shape, pose) { const at = shape.at.map((a) => this.screen(a, pose)); return at.length > 1 ? at : [at[0], at[0]]; }
-    // Of the screen; along x if the shape has none.
+    // Returns the direction on the screen; along x if the shape has none.
     direction(shape, pose) { const last = shape.at[shape.at.length - 1]; return flipped(turn(shape.direction || [1, 0], pose(last.body)[2])); }
     update(f) { this.scene.updaters.push(f); }
     channel(element, shape) { return shape.quantity ? this.scene.run.channel(`${element.name}.${shape.quantity}`) : undefined; }
@@ -47,15 +47,15 @@ steplap.Symbols = (() => {
       this.pieces.set(element.name, [...(this.pieces.get(element.name) || []), node]);
       return node;
     }
-    // In colour from when the element lifted, opened or broke.
+    // Colours elements from the instant at which they lifted, opened or broke.
     showMoved(t) {
       for (const name of this.scene.moved)
         for (const node of this.pieces.get(name) || []) if (!node.classList.contains('force')) node.classList.toggle('moved', this.scene.hasMoved(name, t));
     }
-    // Of a channel what an arrow of it takes on the screen: all forces of all scenes to one scale.
+    // Returns the length of an arrow on the screen; all forces of all scenes have one scale.
     arrowLength(force) { return (8 * this.u * Math.abs(force)) / (this.scene.largestForce || 1); }
-    // A force whose arrow ends (or begins) at a place, with its value on demand. `where` gives { at, d, force }: it acts
-    // at `at` along d, on the screen.
+    // Draws a force whose arrow ends (or begins) at a place, with its value on demand. `where` returns { at, d, force }: the force acts at
+    // `at` along d, on the screen.
     force(element, shape, where, isPulling = false) {
       const channel = this.channel(element, shape);
       if (!channel) return;
@@ -73,12 +73,12 @@ steplap.Symbols = (() => {
       this.scene.textLayer.append(text);
       return text;
     }
-    // At the tip of an arrow along d, or as near as there is room: placed when all that wants room is known.
+    // Requests a text at the tip of an arrow along d, or as near as possible. It is placed when all requests are known.
     showValue(text, content, at, d, weight = Infinity) {
       text.textContent = '';
       if (this.scene.withValues && content) this.wanted.push({ text, content, at, d, weight });
     }
-    // The largest first. One that has no room near its place is left out, and the picture says how many are (legend.js).
+    // Places values, the largest first. A value without room near its place is omitted, and the picture shows how many are (legend.js).
     placeValues() {
       const all = this.wanted.sort((a, b) => b.weight - a.weight);
       let shown = 0;
@@ -98,7 +98,7 @@ steplap.Symbols = (() => {
       text.setAttribute('x', x.toFixed(1));
       text.setAttribute('y', (y + 0.32 * height).toFixed(1));
     }
-    // Moves a text's middle by the first of the shifts that leaves it clear of marks and texts, and onto the picture.
+    // Moves the centre of a text by the first shift that keeps it inside the picture and clear of marks and texts.
     put(text, at, [width, height], shifts) {
       this.write(text, this.room(at, [width, height], shifts) || this.take(this.onPicture(add(at, shifts[0]), [width, height]), [width, height]));
     }
@@ -114,7 +114,7 @@ steplap.Symbols = (() => {
       this.scene.takenTexts.push([...at, ...size]);
       return { at, size };
     }
-    // Takes the first place on the picture, by the shifts, that is clear of marks and texts; null if there is none.
+    // Returns the first shifted place inside the picture that is clear of marks and texts; null if there is none.
     room(at, size, shifts) {
       for (const shift of shifts) {
         const place = this.onPicture(add(at, shift), size);
@@ -124,7 +124,7 @@ steplap.Symbols = (() => {
     }
 
     // --- half-planes --------------------------------------------------------------------------------------
-    // As far as what touches them comes, hatched on the solid side; of a body with an outline the outline shows it.
+    // A half-plane is drawn as far as contacts touch it, hatched on the solid side; the outline of a body replaces it.
     halfPlane(plane) {
       const scene = this.scene;
       if (scene.body(plane.body).is_outline_given || !plane.feet.length) return;
@@ -142,7 +142,7 @@ steplap.Symbols = (() => {
       };
       this.update((t, pose) => {
         const middle = this.screen(plane, pose), d = flipped(turn(tangent, pose(plane.body)[2])), down = scaled(flipped(turn(plane.normal, pose(plane.body)[2])), -1);
-        // Not further than the picture: zoomed in, a floor is long.
+        // Not beyond the picture, because a floor is long when zoomed in.
         const centre = dot(d, minus([scene.width / 2, scene.height / 2], middle)), reach = scene.width + scene.height;
         const beyond = plane.ends ? 0 : 3 * this.u, from = Math.max(plane.range[0] * scene.scale - beyond, centre - reach), to = Math.min(plane.range[1] * scene.scale + beyond, centre + reach);
         if (!(to > from)) { line.setAttribute('d', 'M0 0'); hatch.setAttribute('d', 'M0 0'); return; }
@@ -155,10 +155,10 @@ steplap.Symbols = (() => {
     }
     fit() { for (const plane of this.planes) if (plane.fit) plane.fit(); this.placeSprings(); }
 
-    // Corners of step-lap joints: the sheets that overlap there.
+    // Draws the corners of step-lap joints, where sheets overlap.
     sheets() {
       const { scene } = this;
-      // Strips along the mitre; whole sheets would be lines across the windows.
+      // Only strips along the mitre are drawn; whole sheets would be lines across the windows.
       const span = (ring) => new steplap.Box().joined(ring.reduce((box, p) => box.take(p), new steplap.Box())).span;
       for (const sheet of steplap.data.corners(scene.run).filter((s) => Math.max(...span(s.limb_sheet)) < 0.5 * scene.body(s.limb).reach))
         for (const [name, owner, ring] of [['yoke', sheet.active_part, sheet.yoke], ['limb', sheet.limb, sheet.limb_sheet]]) {
@@ -169,7 +169,7 @@ steplap.Symbols = (() => {
     }
 
     // --- springs, ropes ---------------------------------------------------------------------------------------
-    // From b to a, where springs.js has put it.
+    // Draws a spring from b to a, at the place chosen by springs.js.
     spring(element, shape) {
       const bar = this.piece(element, { class: `symbol spring ${shape.style || ''}` }), own = { element, shape };
       this.springs.push(own);
@@ -195,7 +195,8 @@ steplap.Symbols = (() => {
       for (const pulley of shape.at.slice(1, -1)) this.dot(element, pulley, 'pulley', 0.6);
     }
 
-    // Where a rope leaves two wheels; radii are positive where counter-clockwise winds it up (elements/machinery/wound_rope.h).
+    // Returns the points where a rope leaves two wheels; a radius is positive if counter-clockwise rotation winds the rope up
+    // (elements/machinery/wound_rope.h).
     tangent([a, b], [ra, rb]) {
       const d = scaled(flipped(minus(b, a)), 1 / this.scene.scale), square = dot(d, d), c = ra + rb, length = Math.sqrt(Math.max(0, square - c * c));
       if (!(square > 0)) return [a, b];
@@ -204,7 +205,8 @@ steplap.Symbols = (() => {
     }
 
     // --- contacts ---------------------------------------------------------------------------------------------
-    // A wedge at what touches, filled while it presses; a tick of the line under it; the force on what touches.
+    // A contact: a wedge at the touching point, filled while it is pressed, a tick of the line below it, and the force on the touching
+    // body.
     contact(element, shape) {
       const tick = this.piece(element, { class: 'surface' }), wedge = this.piece(element, { class: 'contact' }), force = this.channel(element, shape);
       const hasLine = shape.plane !== undefined && !this.scene.body(this.planes[shape.plane].body).is_outline_given;
@@ -220,8 +222,8 @@ steplap.Symbols = (() => {
       });
       this.force(element, shape, (t, pose, channel) => { const { a, n } = places(pose); return { at: add(a, scaled(n, 0.85 * this.u)), d: n, force: channel.at(t) }; }, true);
     }
-    // Outlines on outlines: the force on a in the middle of what touches (its line of action is not recorded: on a face
-    // that is pressed more at one end it lies nearer to that end).
+    // Contact between outlines: the force on a in the middle of the touching edge. Its line of action is not recorded; on an unevenly
+    // loaded face it is nearer to the end with more load.
     faces(element, shape) {
       const places = shape.at.slice(0, -1), frame = shape.at[shape.at.length - 1];
       const corners = (own, pose) => own.map((place) => this.screen(place, pose));
@@ -233,7 +235,7 @@ steplap.Symbols = (() => {
         return found ? { at: found.at, d: found.n, force: channel.at(t) } : { at: origin, d: [0, -1], force: 0 };
       }, true);
     }
-    // Round on round, round on edge: a dot where they touch while they press, and the force on a.
+    // Contact of a circle with a circle or an edge: a dot while it is pressed, and the force on a.
     touching(element, shape, where) {
       const dot = this.dotOf(element, 'touch'), force = this.channel(element, shape);
       this.update((t, pose) => {
@@ -250,7 +252,7 @@ steplap.Symbols = (() => {
         return { at: add(b, scaled(away, rb * this.scene.scale)), n, ra };
       });
     }
-    // The edge is a segment, or a road of many: further ends follow the thickness.
+    // Circle on an edge: a segment, or a road of several, whose further ends follow the thickness.
     edge_touch(element, shape) {
       const frame = shape.at[1].body, thickness = shape.sizes[5], ends = steplap.endsOfEdge(shape.sizes).map((point) => ({ body: frame, point }));
       this.touching(element, shape, (pose) => {
@@ -265,13 +267,13 @@ steplap.Symbols = (() => {
         return { at: add(nearest, scaled(n, 0.5 * thickness * this.scene.scale)), n };
       });
     }
-    // What friction does, in words, between the contacts it sits on.
+    // Describes the state of friction in words, between the contacts on which it acts.
     friction(element, shape) {
       const { scene } = this, names = element.contacts || [];
       const places = element.contacts ? names.map((name) => scene.byName.get(name)).filter((e) => e && e.at.length).map((e) => e.at[0]) : element.at;
       const rate = scene.run.channel(`${element.name}.slip_rate`), force = this.channel(element, shape);
-      if (!places.length || !scene.run.channel(`${element.name}.mode`) || this.frictions > 30) return; // more words than room
-      const subject = element.contacts || element.shapes.some((other) => other.type === 'faces') ? places[0].body : element.name; // what moves
+      if (!places.length || !scene.run.channel(`${element.name}.mode`) || this.frictions > 30) return; // too many words
+      const subject = element.contacts || element.shapes.some((other) => other.type === 'faces') ? places[0].body : element.name; // the moving part
       const text = make('text', { class: 'state-text', 'data-element': element.name });
       scene.textLayer.append(text);
       this.update((t, pose) => {
@@ -279,8 +281,8 @@ steplap.Symbols = (() => {
         const [x, y] = scene.toScreen(scaled(sum, 1 / places.length)), m = scene.run.modeAt(element.name, t);
         const state = m === 2 ? 'slides' : 'slid';
         const arrow = m === 2 && rate ? (rate.at(t) >= 0 ? ' →' : ' ←') : '';
-        const hasMoved = m !== 2 && scene.hasMoved(element.name, t), isSaid = m === 2 || hasMoved; // what holds needs no word
-        const isFelt = scene.withValues && force && Math.abs(force.at(t)) > 1e-6 * scene.largestForce; // as with arrows, less is rounding
+        const hasMoved = m !== 2 && scene.hasMoved(element.name, t), isSaid = m === 2 || hasMoved; // sticking friction needs no word
+        const isFelt = scene.withValues && force && Math.abs(force.at(t)) > 1e-6 * scene.largestForce; // smaller forces are rounding, as for arrows
         text.textContent = !isSaid ? '' : `${steplap.words.sentence(subject, state)}${arrow}${isFelt ? `, ${steplap.data.quantity(force.at(t), force.unit, 4)}` : ''}`;
         text.setAttribute('class', 'state-text slips');
         const width = 8.4 * text.textContent.length, ways = [14, 32, -16, 50, -34, 68, 86, 104];
@@ -297,7 +299,7 @@ steplap.Symbols = (() => {
         circle.setAttribute('cx', x); circle.setAttribute('cy', y); circle.setAttribute('r', size * this.u);
       });
     }
-    // On something that is held it stands on a bearing block.
+    // A pin on a fixed body is drawn on a bearing block.
     pin(element, shape) {
       const held = shape.at.find((place) => this.scene.isHeld(place.body));
       if (held && held.body === 'ground') {
@@ -312,27 +314,27 @@ steplap.Symbols = (() => {
     }
     bushing(element, shape) { this.dot(element, shape.at[0], 'bushing', 0.75); this.dot(element, shape.at[0], 'pin', 0.35); }
     weld(element, shape) {
-      if (shape.at.every((place) => this.scene.body(place.body).is_outline_given)) return; // they are seen to be one
+      if (shape.at.every((place) => this.scene.body(place.body).is_outline_given)) return; // the outlines already show it
       const square = this.piece(element, { class: 'symbol weld' });
       this.update((t, pose) => { const [x, y] = this.screen(shape.at[0], pose), h = 0.32 * this.u; square.setAttribute('d', `M${x - h} ${y - h}h${2 * h}v${2 * h}h${-2 * h}Z`); });
     }
-    // The line that is free, dashed, with a block on it where the guided marker is.
+    // A guide: the free line, dashed, with a block at the guided marker.
     rail(element, shape) {
       if (shape.style === 'limit' && shape.sizes) { this.stops(element, shape); return; }
-      if (shape.style === 'brake') return; // its words say what it does
-      if (this.scene.wheelsOf(shape.at[0].body).length) return; // they say how it is guided
+      if (shape.style === 'brake') return; // its words describe it
+      if (this.scene.wheelsOf(shape.at[0].body).length) return; // the wheels already show the guide
       if (shape.style === 'skate') { this.blade(element, shape); return; }
       if (shape.at.length > 1 && this.scene.body(shape.at[0].body).is_outline_given && this.hasEdge(shape)) { this.rollers(element, shape); return; }
       const line = this.piece(element, { class: 'symbol rail' }), block = this.piece(element, { class: 'symbol block' });
       this.update((t, pose) => {
         const [a, b] = this.ends(shape, pose), d = this.direction(shape, pose), way = dot(d, minus(a, b)), reach = 4 * this.u;
-        const from = minus(a, scaled(d, way)); // where the slide began, beside b where it runs beside b
+        const from = minus(a, scaled(d, way)); // start of the slide, next to b if it runs along b
         line.setAttribute('d', path([add(from, scaled(d, Math.min(0, way) - reach)), add(from, scaled(d, Math.max(0, way) + reach))]));
         const on = a, x = scaled(d, 0.9 * this.u), y = scaled(across(d), 0.45 * this.u);
         block.setAttribute('d', path([add(add(on, x), y), add(minus(on, x), y), minus(minus(on, x), y), minus(add(on, x), y)], true));
       });
     }
-    // A skate, or a wheel from above: a block along its way.
+    // A skate, or a wheel seen from above: a block along its direction.
     blade(element, shape) {
       const block = this.piece(element, { class: 'symbol block' });
       this.update((t, pose) => {
@@ -345,7 +347,7 @@ steplap.Symbols = (() => {
       this.update((t, pose) => line.setAttribute('d', path(this.ends(shape, pose))));
       for (const place of shape.at) this.dot(element, place, 'pin', 0.3);
     }
-    // A kind that says nothing of its looks.
+    // Symbol for kinds that define none.
     neutral(element, shape) {
       const line = this.piece(element, { class: 'symbol neutral' });
       this.update((t, pose) => {
@@ -364,14 +366,15 @@ steplap.Symbols = (() => {
         this.showValue(text, channel ? steplap.data.quantity(couple, channel.unit, 4) : '', add(at, [1.9 * this.u, -1.2 * this.u]), [1, 0]);
       });
     }
-    // Where what turns one body against another is drawn: at the pin between them; against the ground at any pin of the body.
+    // Returns where an element that turns one body against another is drawn: at the pin between them, or, against the ground, at any pin of
+    // the body.
     jointOf(shape) {
       const [a, b] = shape.at, holds = (pin, name) => pin.at.some((place) => place.body === name);
       const between = b && this.pins.find((pin) => holds(pin, a.body) && holds(pin, b.body));
       const found = between || (b && b.body === 'ground' ? this.pins.find((pin) => holds(pin, a.body)) : null);
       return found ? found.at[0] : a;
     }
-    // In front of the body, as far as it reaches along the arrow.
+    // Returns the point in front of the body, at its extent along the arrow.
     frontOf(shape) {
       const { scene } = this, place = shape.at[0], body = scene.body(place.body), rest = (name) => scene.reference(name);
       if (body.isPoint) return place;
@@ -437,19 +440,19 @@ steplap.Symbols = (() => {
 
   Symbols.types = {};
   for (const type of ['spring', 'rope', 'contact', 'touch', 'faces', 'edge_touch', 'friction', 'pin', 'bushing', 'weld', 'rail', 'rod', 'neutral', 'arc', 'arrow']) Symbols.types[type] = Symbols.prototype[type];
-  Symbols.types.joint = () => {}; // its sheets are drawn
+  Symbols.types.joint = () => {}; // its sheets are drawn instead
 
   Object.assign(steplap.Scene.prototype, {
     buildSymbols() {
       this.takenTexts = [];
-      // Room for texts: not on names of bodies, nor on texts that are there before.
+      // Space for texts: not on names of bodies or other texts.
       const middleAndSize = ([x0, y0, x1, y1]) => [0.5 * (x0 + x1), 0.5 * (y0 + y1), x1 - x0 + 4, y1 - y0];
       this.updaters.push((t, pose) => { this.takenTexts = this.nameBoxes(pose).map(middleAndSize); });
       this.symbols = new Symbols(this);
       this.updaters.push((t, pose) => { this.symbols.showMoved(t); this.showHappenings(t, pose); this.symbols.placeValues(); });
     },
     fitSymbols() { this.symbols.fit(); },
-    // The largest force of those that are drawn as arrows.
+    // Returns the largest force that is drawn as an arrow.
     ownLargestForce() {
       let largest = 0;
       for (const e of this.elements)

@@ -1,13 +1,13 @@
-// What happened, on one axis of time with the slider: a lane for each element that slips, opens or breaks, with the
-// stretches in which it does and a sign where it begins and ends. Signs that would lie on each other are one with a count.
+// Events on one time axis with the slider: a lane for each element that slips, opens or breaks, with its intervals and a sign at their
+// beginnings and ends. Overlapping signs are merged into one with a count.
 steplap.Timeline = (() => {
   const make = steplap.make;
   const size = 14, laneHeight = 20, thumb = 16;
 
-  // What begins a stretch, and what ends it.
+  // Events that begin and end an interval.
   const stretches = [{ begins: ['slip'], ends: ['stick', 'free', 'apart'], class: 'slipping', word: 'slips' }, { begins: ['open'], ends: ['close', 'strike'], class: 'open', word: 'is open' }];
 
-  // Elements with events that have a sign: those that slipped or broke first, then what else the story tells of.
+  // Returns elements with events that have a sign: first those that slipped or broke, then the others in the story.
   function lanesOf(run, most) {
     const { moved, story } = steplap.overview.of(run), lanes = new Map();
     for (const [t, who, what, text, role] of run.events) {
@@ -24,7 +24,7 @@ steplap.Timeline = (() => {
     const others = { who: `${rest.length} others`, isMany: true, events: rest.flatMap((lane) => lane.events).sort((a, b) => a.t - b.t) };
     return [...sorted.slice(0, most - 1), others];
   }
-  // [{ from, to, kind }] of one element.
+  // Returns the intervals of one element as [{ from, to, kind }].
   function stretchesOf(lane, end) {
     if (lane.isMany) return [];
     const found = [];
@@ -39,7 +39,7 @@ steplap.Timeline = (() => {
     }
     return found;
   }
-  // Events whose signs would touch stand together: { x, events }.
+  // Groups events whose signs would touch: { x, events }.
   function gathered(events, xOf) {
     const groups = [];
     for (const e of events) {
@@ -47,7 +47,7 @@ steplap.Timeline = (() => {
       if (last && x - last.x < (last.events.length > 1 ? size + 20 : size + 3)) last.events.push(e);
       else groups.push({ x, events: [e] });
     }
-    // One that has got a count needs its room: its neighbour joins it.
+    // A sign with a count is wider, so its neighbour may join the group.
     for (let i = 1; i < groups.length; ++i)
       if (groups[i - 1].events.length > 1 && groups[i].x - groups[i - 1].x < size + 20) {
         groups[i - 1].events.push(...groups[i].events);
@@ -57,7 +57,7 @@ steplap.Timeline = (() => {
   }
 
   return class Timeline {
-    // `end`: of the axis of time; runs may go on.
+    // `end`: end of the time axis; runs may be longer.
     constructor(runs, end, { lanes, axis, slider, onTime }) {
       Object.assign(this, { runs, end, box: lanes, axisBox: axis, slider, onTime });
       this.most = runs.length > 1 ? 3 : 5;
@@ -70,7 +70,7 @@ steplap.Timeline = (() => {
     }
     xOf(t) { return this.left + ((this.width - this.left - this.right) * t) / this.end; }
     timeAt(x) { return ((x - this.left) * this.end) / (this.width - this.left - this.right); }
-    // Names stand before their lanes; on a narrow screen over them.
+    // Names are in front of their lanes; on a narrow screen above them.
     measure(width) {
       this.width = Math.max(240, width || this.box.clientWidth || 1260);
       this.isNarrow = this.width < 560;
@@ -88,7 +88,7 @@ steplap.Timeline = (() => {
       while (text.length > 3 && this.canvas.measureText(`${text}…`).width > room) text = text.slice(0, -1);
       return `${text}…`;
     }
-    // `width`: in pixels; without it that of its place.
+    // `width` in pixels; by default that of its container.
     build(width) {
       this.measure(width);
       this.box.replaceChildren();
@@ -102,7 +102,7 @@ steplap.Timeline = (() => {
       this.cursor.hidden = !all.length;
       this.box.append(this.cursor);
       this.drawAxis();
-      // The middle of the thumb stands where the axis says.
+      // Aligns the middle of the slider's thumb with the axis.
       this.slider.style.marginLeft = `${this.left - thumb / 2}px`;
       this.slider.style.width = `${this.width - this.left - this.right + thumb}px`;
     }
@@ -123,7 +123,7 @@ steplap.Timeline = (() => {
       const [firstEvent] = group.events, count = group.events.length, role = steplap.signs.worst(group.events.map((e) => e.role));
       const text = count === 1 ? firstEvent.text : `${count} events from ${firstEvent.text.replace(/^.* at /, '')}:\n${group.events.slice(0, 12).map((e) => e.text).join('\n')}${count > 12 ? '\n…' : ''}`;
       const box = make('g', { class: 'event', role: 'listitem', 'data-t': firstEvent.t, 'data-who': firstEvent.who, 'data-count': count }, make('title', {}, text));
-      const x = Math.min(group.x, this.width - this.right - (count > 1 ? 18 : 0)); // the count stays on the picture
+      const x = Math.min(group.x, this.width - this.right - (count > 1 ? 18 : 0)); // keeps the count inside the picture
       box.append(steplap.signs.mark(role, x, y, size));
       if (count > 1) box.append(make('text', { x: x + size / 2 + 2, y: y + 4, class: 'count' }, count > 99 ? '99+' : `×${count}`));
       box.addEventListener('click', () => this.onTime(firstEvent.t));
@@ -151,7 +151,7 @@ steplap.Timeline = (() => {
       this.slider.value = String(t);
       this.slider.setAttribute('aria-valuetext', steplap.numbers.instant(t, this.end));
     }
-    // The instant of the event before or after t, of all lanes; the beginning or the end if there is none.
+    // Returns the instant of the previous or next event of all lanes; the beginning or the end if there is none.
     beside(t, direction) {
       const times = this.runs.flatMap((run) => run.events.filter((e) => steplap.signs.has(e[4])).map((e) => e[0])).sort((a, b) => a - b);
       const room = 1e-9 * this.end;
@@ -161,7 +161,7 @@ steplap.Timeline = (() => {
   };
 })();
 
-// What happened in words, a line each; a click goes to the instant.
+// Events in words, one per line; a click goes to the instant.
 steplap.story = (() => {
   const make = steplap.make, first = 6;
   function line(entry, onTime) {

@@ -1,4 +1,4 @@
-// The verdict with its reason, and how far it can be trusted: a line each; the table behind the line is folded.
+// The verdict with its reason, and a line on how reliable it is, with a folded table behind it.
 steplap.verdict = (() => {
   const make = steplap.make, { few, table } = steplap.tables, { one, instant, full } = steplap.numbers;
   const levels = { good: 'Numerical error: small.', limited: 'Numerical error: not known to be small.', none: 'Numerical error: not known.' };
@@ -64,7 +64,7 @@ steplap.verdict = (() => {
     const summary = isOne ? make('summary', {}, ...trustLine(runs[0])) : make('summary', {}, 'How far these can be trusted');
     document.getElementById('trust').append(summary);
   }
-  // What the fold holds; it is not needed for the first picture.
+  // Builds the contents of the fold, which the first picture does not need.
   function buildTrust(runs) {
     const heads = ['', ...runs.map((r) => r.name)];
     document.getElementById('trust').append(table(runs.length > 1 ? heads : null, rows(runs).map(([name, text]) => [name, ...runs.map(text)])));

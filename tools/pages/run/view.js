@@ -1,5 +1,4 @@
-// Looking closer at the machine: wheel, drag, two fingers, keys, buttons, the same for all its pictures; and taking
-// pictures and curves home as files.
+// Zooms and pans all pictures of the machine by wheel, drag, two fingers, keys and buttons; saves pictures and curves as files.
 steplap.View = class View {
   constructor(scenes, redraw) {
     Object.assign(this, { scenes, redraw, zoom: 1, shift: [0, 0] });
@@ -16,7 +15,7 @@ steplap.View = class View {
     this.redraw();
   }
   reset() { this.set(1, [0, 0]); }
-  // What is under the pixel (x, y) of the picture stays there.
+  // Zooms about the pixel (x, y), which stays in place.
   zoomAt(scene, factor, x = scene.width / 2, y = scene.height / 2) {
     const before = scene.toPlane(x, y), zoom = Math.min(1e4, Math.max(0.2, this.zoom * factor)), k = this.zoom / zoom;
     this.set(zoom, [0, 1].map((i) => this.shift[i] + (before[i] - scene.centre[i]) * (1 - k)));
@@ -29,7 +28,7 @@ steplap.View = class View {
     const middle = () => { const all = [...touches.values()]; return [0, 1].map((i) => all.reduce((sum, p) => sum + p[i], 0) / all.length); };
     const spread = () => { const [a, b] = [...touches.values()]; return Math.hypot(a[0] - b[0], a[1] - b[1]); };
     svg.addEventListener('wheel', (event) => {
-      // Unasked a wheel turns the page; asked it looks closer: with Ctrl, or once the picture has been clicked.
+      // The wheel scrolls the page; it zooms with Ctrl, or once the picture has been clicked.
       if (!event.ctrlKey && document.activeElement !== svg) return;
       event.preventDefault();
       this.zoomAt(scene, Math.exp(-0.0015 * event.deltaY * (event.deltaMode ? 30 : 1)), ...place(event));
@@ -38,7 +37,7 @@ steplap.View = class View {
       if (event.pointerType === 'mouse' && event.button !== 0) return;
       touches.set(event.pointerId, place(event));
       svg.focus({ preventScroll: true });
-      // One finger turns the page while the whole machine is seen; two, or one on a part of it, move the picture.
+      // One finger scrolls the page while the whole machine is visible; two fingers, or one on an enlarged part, move the picture.
       if (event.pointerType !== 'touch' || touches.size > 1 || svg.classList.contains('zoomed')) svg.setPointerCapture(event.pointerId);
     });
     svg.addEventListener('pointermove', (event) => {
@@ -69,7 +68,7 @@ steplap.View = class View {
 steplap.save = (() => {
   const looks = ['fill', 'fill-opacity', 'stroke', 'stroke-width', 'stroke-dasharray', 'stroke-linecap', 'stroke-linejoin', 'stroke-opacity', 'opacity', 'vector-effect',
     'font-family', 'font-size', 'font-weight', 'text-anchor', 'dominant-baseline', 'paint-order', 'display'];
-  // A file of the browser's downloads.
+  // Offers a file as a download.
   function file(name, type, content) {
     const link = document.createElement('a'), url = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type }));
     link.href = url;
@@ -79,7 +78,7 @@ steplap.save = (() => {
     link.remove();
     setTimeout(() => URL.revokeObjectURL(url), 10000);
   }
-  // A drawing of the page as one that stands alone: what the page's style says of it is written into it.
+  // Copies a drawing of the page with the computed styles written into it, so that it can be saved alone.
   function alone(svg) {
     const copy = svg.cloneNode(true), from = [svg, ...svg.querySelectorAll('*')], to = [copy, ...copy.querySelectorAll('*')];
     from.forEach((node, i) => {
@@ -94,7 +93,7 @@ steplap.save = (() => {
     return { text: new XMLSerializer().serializeToString(copy), width, height };
   }
   const svg = (drawing, name) => file(`${name}.svg`, 'image/svg+xml', alone(drawing).text);
-  // A canvas with the drawing as it is now; the promise is kept once the browser has drawn it.
+  // Returns a promise of a canvas with the present drawing, fulfilled once the browser has drawn it.
   async function raster(drawing, magnified) {
     const { text, width, height } = alone(drawing), image = new Image(), canvas = document.createElement('canvas');
     image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;
@@ -107,7 +106,7 @@ steplap.save = (() => {
     const canvas = await raster(drawing, magnified);
     canvas.toBlob((blob) => file(`${name}.png`, 'image/png', blob), 'image/png');
   }
-  // Buttons that save: { SVG: action, ... }.
+  // Returns buttons that save: { SVG: action, ... }.
   function buttons(actions) {
     const box = steplap.make('span', { class: 'save' }, 'Save: ');
     for (const [label, action] of Object.entries(actions)) {
@@ -120,7 +119,7 @@ steplap.save = (() => {
   return { file, svg, png, raster, alone, buttons };
 })();
 
-// Icons drawn, not typed: no font is asked for a sign that it may lack.
+// Icons are drawn instead of typed, because a font may lack the sign.
 steplap.icon = (name) => {
   const shapes = { play: 'M4 2L13 8L4 14Z', pause: 'M4 2H7V14H4ZM9 2H12V14H9Z', closer: 'M7 2H9V7H14V9H9V14H7V9H2V7H7Z', further: 'M2 7H14V9H2Z',
     whole: 'M2 2H6V4H4V6H2ZM10 2H14V6H12V4H10ZM2 10H4V12H6V14H2ZM12 10H14V14H10V12H12Z' };

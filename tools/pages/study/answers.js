@@ -1,4 +1,4 @@
-// The answer of a study as sentences. They follow from what its findings are (their roles), whatever kind of study found them.
+// The answer of a study as sentences. They depend on the roles of its findings, not on the kind of study.
 study.answers = (() => {
   const { data } = study, most = 4; // sentences
   const minus = (text) => text.replace(/-(?=[\d.])/g, '−');
@@ -9,7 +9,7 @@ study.answers = (() => {
   const isKnown = (f) => f.value !== null && isFinite(f.value);
   const doubt = (f) => (f.status ? ` In doubt: ${f.status}.` : '');
 
-  // As per cent, to two digits of the interval's width; shares below 0.001 % as numbers.
+  // Formats a percentage to two digits of the interval's width; shares below 0.001 % as numbers.
   function chance(f) {
     if (f.value > 0 && f.value < 1e-5) return `${quantity(f)}${between(f)}`;
     const width = f.low !== null && f.high !== null ? 100 * (f.high - f.low) : 0;
@@ -17,15 +17,15 @@ study.answers = (() => {
     const decimals = Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(width)))), text = (v) => (100 * v).toFixed(decimals);
     return `${text(f.value)}\u202f% (${text(f.low)} to ${text(f.high)}\u202f%)`;
   }
-  // Orders the results of several methods: without doubt first, then with an interval, then by its width.
+  // Orders the results of several methods: those without remarks first, then those with an interval, then by its width.
   const rank = (f) => [f.status ? 1 : 0, f.low === null || f.high === null ? 1 : 0, f.high - f.low || 0];
   const byRank = (a, b) => { const [p, q] = [rank(a), rank(b)], k = p.findIndex((v, i) => v !== q[i]); return k < 0 ? 0 : p[k] - q[k]; };
   const largest = (list) => [...list].sort((a, b) => Math.abs(b.value) - Math.abs(a.value)).slice(0, 1);
   const best = (list) => [...list].sort(byRank).slice(0, 1);
   const all = (list) => list;
 
-  // [role, which findings of a subject, its sentence]; the first role that a study has is its answer. Other probabilities than the plain
-  // one are corrections of the same method.
+  // [role, selection of a subject's findings, sentence]. The first role that the study has gives the answer. Other probabilities than the
+  // plain one are corrections of the same method.
   const sentences = [
     ['probability', (list) => best(list.filter((f) => !f.quantity.includes('('))),
       (f) => `The probability of '${f.subject}' is ${chance(f)}.`],
@@ -64,7 +64,7 @@ study.answers = (() => {
     };
     return [`The border runs through ${names.map(reach).join(' and ')}.`];
   }
-  // The lowest and highest value of each response.
+  // Describes the lowest and highest value of each response.
   function reached(found) {
     return bySubject(found.filter((f) => f.role === 'extreme' && isKnown(f))).filter((ends) => ends.length === 2)
       .map(([low, high]) => `'${low.subject}' goes from ${quantity(low)} to ${quantity(high)}.`);

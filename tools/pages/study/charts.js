@@ -1,17 +1,17 @@
-// Charts by Plotly, of one look; they shrink to the paper where the page is printed.
+// Charts by Plotly in one style; they shrink to the paper width when the page is printed.
 study.charts = (() => {
   const { make } = study;
   const colours = { blue: '#0072b2', vermillion: '#d55e00', green: '#007a5a', orange: '#e69f00', purple: '#a8487c', sky: '#56b4e9', grey: '#6b6b6b' };
   const cycle = [colours.blue, colours.vermillion, colours.green, colours.purple, colours.orange, colours.sky, colours.grey];
   const all = [];
   const isTouched = matchMedia('(pointer: coarse), (max-width: 600px)').matches;
-  // Plotly reads a little markup in its texts: names stay text.
+  // Plotly interprets some markup in its texts, so names are escaped.
   const safe = (text) => String(text).replace(/&/g, '&amp;').replace(/</g, '&lt;').replace(/>/g, '&gt;');
   const axis = (title, more = {}) => ({ title: { text: safe(title), standoff: 8 }, automargin: true, exponentformat: 'power', ...more });
 
-  // Colours of what is no curve, as the page's style says; curves have colours that are seen on light and dark.
+  // Colours of axes and texts follow the page's style; curves have colours that are visible on light and dark backgrounds.
   const scheme = matchMedia('(prefers-color-scheme: dark)');
-  const ink = '#7d858e'; // lines and marks of traces, on both
+  const ink = '#7d858e'; // lines and marks of traces, for light and dark backgrounds
   function look(layout, isPaper) {
     if (isPaper) document.documentElement.classList.add('paper');
     const style = getComputedStyle(document.documentElement), colour = (name) => style.getPropertyValue(`--${name}`).trim();
@@ -22,14 +22,14 @@ study.charts = (() => {
     return found;
   }
 
-  // Of Plotly's buttons those that do not ask a server: one would upload the chart.
+  // Only those of Plotly's buttons that contact no server: one would upload the chart.
   const config = { responsive: true, displaylogo: false, ...(isTouched ? { displayModeBar: false } : {}), plotlyServerURL: '', modeBarButtons: [['toImage', 'zoom2d', 'pan2d', 'zoomIn2d', 'zoomOut2d', 'resetScale2d']] };
 
-  // Charts are drawn when all that is added with them is there: only then their columns are as wide as they stay.
+  // Charts are drawn after everything added with them is in place, because only then the columns have their final width.
   const waiting = [];
   const draw = () => { for (const one of waiting.splice(0)) one(); };
 
-  // One chart with its heading at the end of `parent`. A click on a point that has a sample's place as customdata shows it.
+  // Adds a chart with its heading at the end of `parent`. A click on a point whose customdata is a sample's place shows that sample.
   function add(parent, { title = '', note = '', traces, layout = {}, height = 320, name = '' }) {
     const canvas = make('div', { class: 'canvas' });
     const box = make('div', { class: 'chart', 'data-chart': name || title }, ...(title ? [make('h3', {}, title)] : []), canvas, ...(note ? [make('p', { class: 'note' }, note)] : []));
@@ -52,16 +52,16 @@ study.charts = (() => {
     all.push({ canvas, box });
     return { canvas, box };
   }
-  // The points of a band between two curves, as one closed outline.
+  // Returns the points of a band between two curves as one closed outline.
   function band(x, low, high, colour, more = {}) {
     return { x: [...x, ...[...x].reverse()], y: [...high, ...[...low].reverse()], type: 'scatter', mode: 'none', fill: 'toself', fillcolor: `${colour}33`, hoverinfo: 'skip', ...more };
   }
-  // Takes all charts out of a box, to put others there.
+  // Removes all charts of a box, so that others can replace them.
   function clear(box) {
     for (let i = all.length; i-- > 0;) if (box.contains(all[i].canvas)) Plotly.purge(all.splice(i, 1)[0].canvas);
     box.replaceChildren();
   }
-  // What goes on paper is as wide as the paper's column, and dark on white.
+  // Fits charts to the width of the paper, dark on white, or back.
   function fit(isPaper) {
     for (const { canvas, box } of all) {
       const isWide = box.parentElement.classList.contains('one');

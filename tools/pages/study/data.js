@@ -1,4 +1,4 @@
-// The study of the page, read from its JSON; numbers as text; elements.
+// The study of the page, read from its JSON; formats numbers; creates elements.
 study.make = (name, attributes = {}, ...children) => {
   const element = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
@@ -11,7 +11,7 @@ study.data = (() => {
   const raw = JSON.parse(document.getElementById('data').textContent);
   const pretty = (unit) => unit.replace(/\^2/g, '²').replace(/\^3/g, '³').replace(/ /g, '\u202f');
 
-  // Without trailing zeros; a real minus sign.
+  // Formats a number without trailing zeros, with a real minus sign.
   function plain(value, digits = 6) {
     if (value === null || value === undefined || Number.isNaN(value)) return '–';
     if (!isFinite(value)) return value > 0 ? '∞' : '−∞';
@@ -24,7 +24,7 @@ study.data = (() => {
   }
   const withUnit = (name, unit) => (unit ? `${name} [${pretty(unit)}]` : name);
 
-  // A variable, response or limit state of all samples that the page holds. Values are in the unit's prefix.
+  // A variable, response or limit state of all samples in the page. Values are in the prefix of the unit.
   class Column {
     constructor(entry) {
       Object.assign(this, entry);
@@ -60,7 +60,7 @@ study.data = (() => {
     variables: columns.filter((c) => c.role === 'variable'), outputs: columns.filter((c) => c.role !== 'variable' && c.role !== 'cost') };
 })();
 
-// Cells: a text, a node, or { text, class }; `numeric` are places of columns.
+// Cells: a text, a node, or { text, class }; `numeric` lists the columns with numbers.
 study.table = (heads, rows, numeric = []) => {
   const { make } = study;
   const cell = (name, content, i) => {

@@ -1,4 +1,4 @@
-// How variables and responses are distributed: shares up to a value, or counts, with their bands.
+// Distributions of variables and responses: cumulative shares or counts, with confidence bands.
 study.distributions = (() => {
   const { make, data, charts } = study;
   const { colours, axis, band } = charts;

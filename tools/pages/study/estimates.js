@@ -1,5 +1,5 @@
-// What was found: the answer with its standing, failed runs, design points, indices, what the scene needs, how estimates
-// settled, the table of all estimates.
+// Results of the study: the answer with its status, failed runs, design points, indices, effects of omitted parts, convergence of
+// estimates, the table of all estimates.
 study.estimates = (() => {
   const { make, table, data, charts } = study;
   const at = (id) => document.getElementById(id);
@@ -10,7 +10,7 @@ study.estimates = (() => {
   const scroll = (...content) => make('div', { class: 'scroll' }, ...content);
   const heads = ['method', 'of', 'quantity', 'value', 'interval', 'samples', ''];
   const row = (f) => [f.method, f.subject, f.quantity, { text: quantity(f), class: 'value' }, interval(f), String(f.samples), status(f)];
-  // Subjects in their order, with their findings.
+  // Groups findings by subject, in their order.
   function bySubject(list) {
     const groups = new Map();
     for (const f of list) groups.set(f.subject, [...(groups.get(f.subject) || []), f]);
@@ -22,7 +22,7 @@ study.estimates = (() => {
     section.append(box);
     return box;
   }
-  // At most so many charts; what is left out is said.
+  // Draws at most `most` charts and states how many are omitted.
   function several(section, entries, draw, most = 24) {
     const box = grid(section, entries.length === 1);
     for (const entry of entries.slice(0, most)) draw(box, entry);
@@ -30,7 +30,7 @@ study.estimates = (() => {
   }
 
   // --- the answer ----------------------------------------------------------------------------------
-  // A study that is done has its answer; the others have a badge that warns of it.
+  // A completed study shows its answer; others get a badge with a warning.
   const standings = {
     done: ['', '', ''],
     'not met': ['not-met', 'NOT MET', 'The study has ended, but the wanted accuracy was not reached, or not everything has an answer: see the remarks beside the numbers.'],
@@ -41,7 +41,7 @@ study.estimates = (() => {
   function main() {
     return data.findings.filter((f) => !f.place && study.kind.isAnswer(f));
   }
-  // On narrow screens a row is a paragraph, so that what is to be known about a number is never out of sight.
+  // On narrow screens each row becomes a paragraph, so that all details of a number are visible.
   function stacked(rows) {
     const element = table(heads, rows, [3, 5]);
     element.className = 'stacked';
@@ -106,7 +106,7 @@ study.estimates = (() => {
   function tornado(box, [subject, list]) {
     const column = scaleOf(subject), base = list.find((f) => f.role === 'base'), zero = base && base.value !== null ? base.value * column.factor : 0;
     const bars = list.filter((f) => f.role === 'swing' && f.low !== null && f.high !== null), missing = list.filter((f) => f.role === 'swing' && (f.low === null || f.high === null));
-    // Of different breadth: where both ends lie on one side neither covers the other.
+    // Bars of different widths: where both ends lie on one side, neither hides the other.
     const trace = (key, name, colour, width) => ({ type: 'bar', orientation: 'h', name, width, y: bars.map((f) => safe(f.variable)), base: zero, x: bars.map((f) => f[key] * column.factor - zero),
       customdata: bars.map((f) => data.plain(f[key] * column.factor)), hovertemplate: `%{y}: %{customdata}<extra>${name}</extra>`, marker: { color: colour } });
     charts.add(box, { name: `tornado ${subject}`, title: `${subject}: ${data.plain(zero)}${column.unit ? ` ${data.pretty(column.unit)}` : ''} at the point`, height: barHeight(bars.length),

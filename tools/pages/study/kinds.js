@@ -1,12 +1,11 @@
-// What the page does by the kind of study, and nowhere else: a kind that is not here is shown with all its estimates and
-// with samples in a plane.
+// All that the page does for particular kinds of study. A kind that is not listed is shown with all its estimates and with samples in a
+// plane.
 study.kind = (() => {
   const { data } = study;
   const none = () => false, one = (...roles) => (f) => roles.includes(f.role);
-  // title: of the study. isAnswer: which estimates stand at the top. plane: which drawing samples get, '' for none.
-  // isJudged: a remark beside any of its estimates is a doubt. isCounted: what failed runs count as is told.
-  // beginsWithSentence: the first note is the answer as a sentence.
-  // showsLaws: the variables' distributions are shown where samples do not follow them.
+  // title: of the study. isAnswer: selects the estimates shown at the top. plane: drawing of the samples, '' for none. isJudged: a remark
+  // on any estimate makes it doubtful. isCounted: the treatment of failed runs is stated. beginsWithSentence: the first note is the answer
+  // as a sentence. showsLaws: the variables' distributions are shown although samples do not follow them.
   const kinds = {
     sweep: { title: 'sweep', isAnswer: none, plane: 'sweep' },
     sample: { title: 'samples', isAnswer: (f) => f.role === 'probability' || f.quantity === 'mean', isCounted: true },

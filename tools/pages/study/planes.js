@@ -3,7 +3,7 @@ study.planes = (() => {
   const { make, data, charts } = study;
   const { colours, cycle, axis, safe } = charts;
   const section = document.getElementById('plane');
-  const k_most = 6000; // points that a browser draws without waiting
+  const k_most = 6000; // points that a browser draws quickly
   const range = (n) => Array.from({ length: n }, (_, i) => i);
   const select = (label, columns, chosen) => {
     const element = make('select', {}, ...columns.map((c) => make('option', { value: c.name }, c.head)));
@@ -15,7 +15,7 @@ study.planes = (() => {
     { name: 'failure', marker: { size: 7, color: colours.vermillion, symbol: 'x-thin', line: { color: colours.vermillion, width: 1.6 } } },
     { name: 'run failed', marker: { size: 7, color: study.charts.ink, symbol: 'square-open' } }];
 
-  // Of more points than a browser draws well every so many of each kind.
+  // Thins out points, equally for each kind, if there are more than a browser draws well.
   function thinned(places) {
     const most = Math.floor(k_most / 3);
     let left = k_most - places.reduce((sum, p) => sum + Math.min(p.length, most), 0);
@@ -25,7 +25,7 @@ study.planes = (() => {
       return range(share).map((k) => p[Math.floor(k * p.length / share)]);
     });
   }
-  // Points of all samples of the page by what became of them; what is not drawn is told.
+  // Plots all samples of the page by their outcome; states how many are omitted.
   function cloud(x, y, fate, names = looks.map((l) => l.name)) {
     const places = [[], [], []];
     let unplaced = 0;
@@ -80,7 +80,7 @@ study.planes = (() => {
   }
 
   // --- design ----------------------------------------------------------------------------------------
-  // Values that were tried with their margins; where limits hold the background is shaded.
+  // Tried values with their margins; the background is shaded where all limits hold.
   function design() {
     const points = new Map(), ends = (role) => data.findings.filter((f) => f.role === role && f.value !== null);
     for (const f of data.findings.filter((one) => one.method === 'design' && one.place)) points.set(f.subject, { ...points.get(f.subject), [f.role === 'margin' ? 'margin' : 'value']: f.value, ...(f.status ? { doubt: f.status } : {}) });
@@ -125,7 +125,7 @@ study.planes = (() => {
       x: g.map((i) => x.values[i]), y: g.map((i) => (isFinite(y.values[i]) ? y.values[i] : null)), customdata: g, connectgaps: false, hovertemplate: `${safe(x.name)} %{x:.6g}<br>${safe(y.name)} %{y:.6g}<extra></extra>` }));
     charts.add(box, { name: 'sweep', traces, height: 400, note: `${drawn.length} of ${lines.length} curve${lines.length === 1 ? '' : 's'} drawn${holes ? `; ${holes} points have no value: gaps` : ''}. A click on a point shows the sample.`, layout: { xaxis: axis(x.head), yaxis: axis(y.head) } });
   }
-  // Over a full grid of two variables.
+  // Field over a full grid of two variables.
   function field(box, [x, y], z) {
     const levels = (c) => [...new Set(c.values)].sort((a, b) => a - b), xs = levels(x), ys = levels(y);
     if (xs.length < 3 || ys.length < 3 || xs.length * ys.length !== data.shown) return;

@@ -1,4 +1,4 @@
-// The table of samples, and one of them with the command that replays it.
+// The table of samples, and details of one sample with the command that replays it.
 study.samples = (() => {
   const { make, data } = study;
   const at = (id) => document.getElementById(id);
@@ -15,7 +15,7 @@ study.samples = (() => {
   async function copy(text, button, code) {
     try {
       await navigator.clipboard.writeText(text);
-    } catch (error) { // where a page may not: as a user would
+    } catch (error) { // if the page may not access the clipboard, the text is selected instead
       getSelection().selectAllChildren(code);
       document.execCommand('copy');
     }
@@ -28,7 +28,7 @@ study.samples = (() => {
     button.addEventListener('click', () => copy(text, button, code));
     return [make('p', { class: 'note' }, 'Runs it again, with its full report, in the folder the study was run in:'), make('div', { class: 'command' }, code, button)];
   }
-  // `i`: its place on the page.
+  // `i`: place of the sample in the page.
   function show(i) {
     const box = at('sample'), roles = { variable: 'Values', response: 'Responses', border: 'Responses', 'limit state': 'Limit states', cost: 'The run' }, fate = data.fate(i);
     const close = make('button', { type: 'button', class: 'close', 'aria-label': 'Close' }, '✕');
@@ -48,7 +48,7 @@ study.samples = (() => {
     state.chosen = i;
     for (const row of document.querySelectorAll('#samples tbody tr')) row.classList.toggle('chosen', Number(row.dataset.place) === i);
   }
-  // A button that shows the sample of this number, if the page has it.
+  // Returns a button that shows the sample with this number, if the page contains it.
   function button(number) {
     const i = data.numbers.indexOf(number);
     if (i < 0) return make('span', {}, String(number));
@@ -64,7 +64,7 @@ study.samples = (() => {
     const places = [];
     for (let i = 0; i < data.shown; ++i) if (wanted(i)) places.push(i);
     const column = data.columns.find((c) => `v ${c.name}` === state.key), of = column ? (i) => column.values[i] : keys[state.key], sign = state.isDown ? -1 : 1;
-    // What has no value comes last, whichever way it is sorted.
+    // Samples without value come last in both orders.
     places.sort((a, b) => {
       const x = of(a), y = of(b), no = Number.isNaN(x) - Number.isNaN(y);
       return no || (x < y ? -sign : x > y ? sign : 0) || a - b;

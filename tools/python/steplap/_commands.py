@@ -31,7 +31,7 @@ def _program() -> str:
 
 
 def _diagnostics(message: str) -> list[Diagnostic]:
-    """The errors in a message, "file:line:column: error: what", or "error: what"."""
+    """Returns the errors in a message, "file:line:column: error: text", or "error: text"."""
     found = re.findall(r"^(?:(.*?):(\d+):(\d+): )?error: (.*)$", message, re.M)
     return [Diagnostic(what, file, int(line or 0), int(column or 0)) for file, line, column, what in found]
 
@@ -65,7 +65,7 @@ def _call(arguments: abc.Sequence[str], accepted: abc.Sequence[int]) -> tuple[in
 
 @contextmanager
 def _files(given: abc.Sequence[Any]) -> abc.Iterator[list[str]]:
-    """Paths of what is given: models are written to files meanwhile."""
+    """Returns paths: given models are written to temporary files."""
     with tempfile.TemporaryDirectory(prefix="steplap-") as folder:
         paths = []
         for i, one in enumerate(given):
@@ -80,7 +80,7 @@ def _files(given: abc.Sequence[Any]) -> abc.Iterator[list[str]]:
 
 
 def _option(name: str, value: Any) -> list[str]:
-    """One option of the command line: time_unit="ms" is --time-unit ms, force=True is --force, a list repeats the option."""
+    """Returns an option of the command line: time_unit="ms" is --time-unit ms, force=True is --force, a list repeats the option."""
     flag = "--" + name.replace("_", "-")
     if value is None or value is False:
         return []
@@ -123,7 +123,7 @@ def frame(rows: Any) -> Any:
 
 
 class Result:
-    """What a command says: `text`, `tables` (data frames by name), `data` (all of it as in the JSON)."""
+    """Output of a command: `text`, `tables` (data frames by name), `data` (as in the JSON)."""
 
     def __init__(self, data: abc.Mapping[str, Any]) -> None:
         self.data = dict(data)
@@ -153,7 +153,7 @@ def command(name: str, *files: Any, values: Any = None, **options: Any) -> list[
 
 
 class LoadCases:
-    """The verdict on all load cases of a model: `verdict`, `reason`; data frames `cases`, and `limits` with errors of the utilisations."""
+    """Verdict on all load cases of a model: `verdict`, `reason`; data frames `cases`, and `limits` with errors of the utilisations."""
 
     def __init__(self, data: abc.Mapping[str, Any]) -> None:
         self.data = dict(data)

@@ -1,4 +1,4 @@
-"""Ways into the compiled classes that pybind11 leaves open to a crash: objects without contents, and pickles of protocols 0 and 1."""
+"""Prevents crashes that pybind11 permits in compiled classes: objects without contents, and pickles of protocols 0 and 1."""
 from typing import Any
 
 from ._steplap import Criterion, Diagnostic, Event, Finding, Joint, Mode, Model, Run

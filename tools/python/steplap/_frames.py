@@ -38,7 +38,7 @@ def summary(self: Run) -> dict[str, Any]:
 
 
 def drawing(self: Model) -> dict[str, Any]:
-    """What the machine looks like, as drawing.json: bodies with poses and outlines, elements, sheets; SI."""
+    """Returns the drawing of the machine, as in drawing.json: bodies with poses and outlines, elements, sheets; SI."""
     found: dict[str, Any] = json.loads(self.drawing_text)
     return found
 

@@ -1,4 +1,4 @@
-"""Values of Python as TOML."""
+"""Converts Python values to TOML."""
 import json
 from typing import Any
 
@@ -6,7 +6,7 @@ _DEEPEST = 32  # nested lists and tables; the fields of model files need four
 
 
 def toml(value: Any, where: str, depth: int = 0) -> str:
-    """A value as TOML, in a line. `where` names it in messages. Raises TypeError."""
+    """Returns a value as one line of TOML. `where` names it in messages. Raises TypeError."""
     if depth > _DEEPEST:
         raise TypeError(f"'{where}' is nested more than {_DEEPEST} deep, or holds itself")
     if hasattr(value, "tolist"):  # numpy's numbers and arrays
@@ -41,7 +41,7 @@ def toml_file(model: Any) -> str:
 
 
 def overrides(values: Any) -> list[str]:
-    """Texts "path=value" of a dictionary; a list of such texts, or None, as it is. Raises TypeError."""
+    """Returns texts "path=value" of a dictionary; a list of such texts, or None, unchanged. Raises TypeError."""
     if values is None:
         return []
     if isinstance(values, str):

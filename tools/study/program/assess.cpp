@@ -99,7 +99,7 @@ AssessmentOptions assessment_options(const AssessOptions& o) {
     options.reading.pulse = parse_assumed_pulse(*o.pulse);
     if (!options.reading.pulse)
       throw UsageError("--pulse '" + *o.pulse +
-                       "': give half-sine, haversine or triangle, and how long where the list does not tell: \"half-sine 50 ms\"");
+                       "': give half-sine, haversine or triangle, and the duration if the list has none: \"half-sine 50 ms\"");
   }
   if (o.pulse_axis) {
     if (!o.pulse) throw UsageError("--pulse-axis says along which axis pulses are: give --pulse, too");
@@ -249,7 +249,7 @@ ExitCode run_assessment(const AssessOptions& o, Console& console) {
   if (o.print_criteria) return print_criteria(*o.print_criteria, console);
   AssessmentOptions options = assessment_options(o);
   if (o.records.empty()) throw UsageError("name a recorder's file: steplap assess RECORD --model MODEL");
-  if (o.models.empty()) throw UsageError("name a model with --model: what a record did to a machine is asked of a model of it");
+  if (o.models.empty()) throw UsageError("name a model of the machine with --model");
   const std::string file = (output_folder(o) / "assessment.json").string();
   if (!o.is_overwriting && fs::exists(file))
     throw UsageError("'" + file + "' exists. Choose another folder with -o, or give --force to overwrite it.");

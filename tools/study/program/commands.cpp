@@ -128,8 +128,8 @@ A study that was interrupted goes on when it is run again.
   command.options = {{"FILE", &o->file, "FILE", "study file (TOML)", true},
                      store_option(o),
                      {"--restart", &o->is_restarted, "", "drop what the store holds"},
-                     {"--changed", &o->is_changed, "", "the study asks for something else now: keep the samples that are the same"},
-                     {"--report", &o->is_reported, "", "write the page of the study beside the store (see steplap study report)"},
+                     {"--changed", &o->is_changed, "", "the study has changed: keep the samples that are the same"},
+                     {"--report", &o->is_reported, "", "write the page of the study next to the store (see steplap study report)"},
                      {"--threads", &o->threads, "N", "threads (default: all processors)"}};
   command.prints_tables = true;
   command.run = [o, &ranks](Console& console) { return run_command_of(*o, ranks, console); };
@@ -163,7 +163,7 @@ has not ended is shown as far as it is. Without -o it is written beside the stor
 )";
   command.options = {{"FILE", &o->file, "FILE", "study file or store", true},
                      {"--store", &o->store, "STORE", "file of the results (default: out/<name of the study>.sqlite)"},
-                     {"-o,--output", &o->output, "PAGE", "the page (default: beside the store); - is the standard output"},
+                     {"-o,--output", &o->output, "PAGE", "the page (default: next to the store); - is the standard output"},
                      {"-f,--force", &o->is_overwriting, "", "overwrite an earlier page"}};
   command.run = [o](Console& console) {
     const std::string store = store_of(*o), page = o->output.value_or(page_of(store));

@@ -58,7 +58,7 @@ void show_reasons(Store& store, std::ostream& out) {
 
 constexpr long k_most_samples = 20;
 
-// Prints what a sweep has tried and what each run gave.
+// Prints the values that a sweep has tried, with the results of their runs.
 void show_samples(Store& store, std::ostream& out) {
   const StoreIdentity& identity = store.identity();
   std::vector<TextTable::Align> columns(1 + identity.variables.size() + identity.numbers.size(), TextTable::Align::right);
