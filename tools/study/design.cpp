@@ -162,6 +162,7 @@ void check_design(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) 
 struct DesignValue {
   double margin = 0.0; ///< least limit state, or reliability index less the target
   std::string doubt;   ///< if the margin is not known: why; the value counts as not holding then
+  std::string zero{};  ///< if the margin is zero to the rounding of the run: a sentence that says so; the value counts as not holding then
 };
 
 std::string text_of(const char* format, double a, double b = 0.0) {
@@ -188,6 +189,7 @@ public:
     }
     std::vector<HoldingInterval> intervals =
         holding_intervals(samples, is_list() ? std::vector<Crossing>{} : closed_crossings(function, samples, settings_.tolerance));
+    doubt_stretches_of_zeros(samples);
     if (target_ && !is_list()) correct_by_sampling(intervals);
     answer_.notes.insert(answer_.notes.begin(), sentence(intervals));
     if (intervals.empty()) answer_.degrade(Standing::not_met);
@@ -197,6 +199,16 @@ public:
   }
 
 private:
+  // A margin that is zero to rounding at one value is a border. At two neighbours it is a number that stays at its limit.
+  void doubt_stretches_of_zeros(const LineSamples& samples) {
+    for (std::size_t i = 1; i < samples.x.size(); ++i) {
+      DesignValue &before = known_.at(samples.x[i - 1]), &here = known_.at(samples.x[i]);
+      if (before.zero.empty() || here.zero.empty()) continue;
+      before.doubt = before.zero;
+      here.doubt = here.zero;
+    }
+  }
+
   static SamplingTarget sampling_of(const DesignSettings& s) {
     SamplingTarget sampling;
     sampling.cov = s.cov;
@@ -211,6 +223,7 @@ private:
   static double signed_margin(const DesignValue& value) {
     constexpr double k_least = 1e-12;
     if (!value.doubt.empty()) return std::min(std::isnan(value.margin) ? -1.0 : value.margin, -k_least);
+    if (!value.zero.empty()) return -k_least;
     return value.margin < 0.0 ? std::min(value.margin, -k_least) : std::max(value.margin, k_least);
   }
 
@@ -246,7 +259,8 @@ private:
     for (std::size_t i = 0; i < xs.size(); ++i) {
       const Outcome& outcome = rows[i].outcome;
       const auto least = std::min_element(outcome.numbers.begin() + static_cast<long>(first), outcome.numbers.end());
-      known_[xs[i]] = {*least, outcome.status == SampleStatus::ok ? "" : outcome.reason};
+      const bool is_undecided = outcome.status == SampleStatus::undecided, is_known = is_undecided || outcome.status == SampleStatus::ok;
+      known_[xs[i]] = {*least, is_known ? "" : outcome.reason, is_undecided && *least == 0.0 ? outcome.reason : ""};
       governing_[xs[i]] = static_cast<std::size_t>(least - outcome.numbers.begin()) - first;
     }
   }
@@ -313,6 +327,7 @@ private:
   std::string reason_at(double x) {
     const DesignValue& value = known_.at(x);
     if (!value.doubt.empty()) return value.doubt;
+    if (!value.zero.empty()) return value.zero;
     if (target_) return text_of("the reliability index is %.4g there.", value.margin + *target_);
     const std::size_t limit = governing_.at(x);
     const std::string& name = run_.study().limit_states[limit].name;

@@ -30,10 +30,11 @@ const std::vector<LimitValue>& LimitFunction::at(const std::vector<double>& poin
   for (std::size_t i = 0; i < count; ++i) {
     const Outcome& outcome = rows[i].outcome;
     LimitValue& limit = limits_[i];
-    limit.is_bad = outcome.status != SampleStatus::ok;
+    limit.is_missing = outcome.status != SampleStatus::ok && outcome.status != SampleStatus::undecided;
     limit.g = outcome.numbers[places_[0]];
     for (const std::size_t place : places_)
       limit.g = is_any_ ? std::min(limit.g, outcome.numbers[place]) : std::max(limit.g, outcome.numbers[place]);
+    limit.is_bad = limit.is_missing || (outcome.status == SampleStatus::undecided && limit.g == 0.0);
     bad_ += limit.is_bad;
     if (limit.is_bad || limit.g >= 0.0) continue;
     const double distance = length_of(&points[i * n], n);

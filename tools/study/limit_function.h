@@ -8,8 +8,9 @@ namespace steplap::study {
 
 /// Value for one sample.
 struct LimitValue {
-  double g = 0.0;      ///< negative: failure
-  bool is_bad = false; ///< true if the run failed or cannot be trusted; g has no meaning then
+  double g = 0.0;          ///< negative: failure
+  bool is_missing = false; ///< true if the run failed or cannot be trusted; g has no meaning then
+  bool is_bad = false;     ///< true if it is unknown whether the sample fails: g is missing, or zero to the rounding of the run
 };
 
 struct ReliabilitySettings;
