@@ -1,5 +1,6 @@
 #include "tools/study/reliability.h"
 
+#include "tools/study/evidence.h"
 #include "tools/study/random_variables.h"
 #include "tools/study/samplers.h"
 
@@ -60,6 +61,7 @@ public:
       : run_(run), limit_(run), settings_(settings_of<ReliabilitySettings>(run.study())), target_(target_of(settings_)) {}
 
   Answer answer() {
+    if (!run_.study().evidence.empty()) return answer_with_evidence();
     const bool has_form = asks("form") || asks("sorm");
     target_.test_confidence = 1.0 - k_alarm / static_cast<double>(comparisons());
     if (has_form || asks("importance_sampling")) points_ = find_design_points(limit_, asks("sorm"));
@@ -86,6 +88,12 @@ public:
   }
 
 private:
+  Answer answer_with_evidence() {
+    points_ = find_design_points(limit_, false);
+    sample_with_evidence(limit_, points_, target_, answer_);
+    return std::move(answer_);
+  }
+
   [[nodiscard]] bool asks(const char* method) const {
     return std::find(settings_.methods.begin(), settings_.methods.end(), method) != settings_.methods.end();
   }
@@ -299,6 +307,7 @@ void check_reliability(const LoadedStudy& loaded, std::vector<Diagnostic>& probl
   for (const std::string& name : s.limit_states)
     if (std::find(names.begin(), names.end(), name) == names.end())
       problems.push_back({s.where, "there is no limit state '" + name + "'" + did_you_mean(name, names)});
+  check_evidence(loaded, problems);
 }
 
 Answer run_reliability(StudyRun& run) { return Reliability(run).answer(); }
@@ -317,16 +326,22 @@ StudyKind reliability_kind() {
   kind.holds<ReliabilitySettings>();
   kind.shown = {"methods", "limit_states", "combination", "cov", "confidence"};
   kind.draws_jointly = true;
+  kind.takes_evidence = true;
   kind.parts = {{"half scatter", "probability with half the scatter of ", UnitOf::none, 4},
                 {"larger mean", "probability with a mean 10 % larger of ", UnitOf::none, 4},
                 {"slope", "beta by mean of ", UnitOf::quotient, 4},
                 {"slope", "beta by standard deviation of ", UnitOf::quotient, 4},
                 {"omission", "omission factor of ", UnitOf::none, 4},
                 {"probability", "probability", UnitOf::none, 4},
+                {"prior", "without evidence", UnitOf::none, 4},
+                {"evidence", "chance of the evidence", UnitOf::none, 4},
+                {"evidence", "effective samples", UnitOf::none, 4},
+                {"posterior", "mean with evidence", UnitOf::subject},
+                {"posterior", "standard deviation with evidence", UnitOf::subject},
                 {"beta", "beta", UnitOf::none, 5},
                 {"importance", "importance of "},
                 {"factor", "factor"}}; // ratio of a probability by theory to one by sampling
-  kind.points = {{"form", "design point"}};
+  kind.points = {{"form", "design point"}, {"evidence", "posterior sample", true}};
   kind.check = check_reliability;
   kind.run = run_reliability;
   kind.drawn = reliability_drawn;
