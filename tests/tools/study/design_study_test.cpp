@@ -361,3 +361,60 @@ TEST_CASE("a limit state that is exactly zero holds") {
     CHECK(bench.find("design", "holds from").value == doctest::Approx(0.6).epsilon(1e-4));
   }
 }
+
+// x springs of 1 kN/m each and y of 3 kN/m carry 5 kN/m or more. They cost 1 and 2 each.
+TEST_CASE("the cheapest of all options that hold is chosen, and the dearer ones are listed") {
+  StudyBench bench;
+  const std::string text = "kind = \"design\"\n[design]\ncost = \"x + 2*y\"\n[[variable]]\nname = \"x\"\nvalues = [0, 1, 2, 3, 4, 5]\n"
+                           "[[variable]]\nname = \"y\"\nvalues = [0, 1, 2]\n"
+                           "[[limit_state]]\nname = \"stiffness\"\nexpression = \"x + 3*y - 5\"\n";
+  const Outcome outcome = bench.run(text);
+  CAPTURE(outcome.err);
+  CAPTURE(outcome.out);
+  REQUIRE(outcome.code == 0);
+  // 2 + 3 = 5 costs 4; so does 0 + 6, the first in the order of the grid. 5 and 0 cost 5.
+  CHECK(has(first_line(outcome.out), "The cheapest of 11 options that hold, of 18 tried, is 'x' = 0, 'y' = 2 at a cost of 4."));
+  CHECK(has(first_line(outcome.out), "does not hold: limit state 'stiffness' is negative"));
+  double last = 0.0;
+  for (int k = 1; k <= 11; ++k) {
+    const std::string name = "option " + std::to_string(k);
+    const double x = bench.find("design", "x", name).value, y = bench.find("design", "y", name).value;
+    const double cost = bench.find("design", "cost", name).value;
+    CHECK(x + 3.0 * y >= 5.0);
+    CHECK(cost == x + 2.0 * y);
+    CHECK(cost >= last);
+    last = cost;
+  }
+  CHECK(bench.find("design", "margin", "option 12").value < 0.0); // those that do not hold come last
+}
+
+TEST_CASE("a cheaper option whose result is unknown leaves the choice open") {
+  StudyBench bench;
+  const auto text = [](const std::string& limit) {
+    return "kind = \"design\"\n[design]\ncost = \"x\"\n[[variable]]\nname = \"x\"\nvalues = [1, 2, 3]\n[[limit_state]]\nname = "
+           "\"limit\"\nexpression = \"" +
+           limit + "\"\n";
+  };
+  const Outcome open = bench.run(text("sqrt(x - 1.5)"));
+  CHECK(open.code == 5);
+  CHECK(has(open.out, "1 cheaper option is open"));
+  CHECK(has(first_line(open.out), "is 'x' = 2 at a cost of 2."));
+  const Outcome none = bench.run(text("x - 4"), {"--restart"});
+  CHECK(none.code == 5);
+  CHECK(has(first_line(none.out), "None of 3 options holds. Nearest is 'x' = 3: limit state 'limit' is negative"));
+}
+
+TEST_CASE("a choice that cannot be made is refused with its place") {
+  const auto refused = [](const std::string& cost, const std::string& variable, const std::string& more = "") {
+    StudyBench bench;
+    const Outcome outcome = bench.run("kind = \"design\"\n[design]\ncost = \"" + cost + "\"\n" + more + "[[variable]]\nname = \"x\"\n" +
+                                      variable + "\n[[limit_state]]\nname = \"limit\"\nexpression = \"x\"\n");
+    CHECK(outcome.code == 3);
+    CHECK(has(outcome.err, "study.toml:"));
+    return outcome.err;
+  };
+  CHECK(has(refused("x", "range = [0, 1]"), "is among 'values'"));
+  CHECK(has(refused("y", "values = [0, 1]"), "'y'"));
+  CHECK(has(refused("1/x", "values = [0, 1]"), "has no finite value"));
+  CHECK(has(refused("x", "values = [0, 1]", "p = 0.1\n"), "hold for certain"));
+}
