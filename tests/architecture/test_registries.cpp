@@ -130,8 +130,12 @@ TEST_CASE("a kind of study is a file pair and a line in kinds.cpp") {
       {"reliability",
        {{"tools/study/limit_function.h", "hands its settings to the methods of reliability"},
         {"tools/study/limit_function.cpp", "the same"},
+        {"tools/study/evidence.cpp", "evidence goes with one of its methods, and with its limit states"},
         {"tools/study/design.h", "a design seeks a reliability: its settings are these and more"}}},
-      {"design", {{"tools/study/sweep.cpp", "how samples are arranged"}, {"tools/study/sample.cpp", "how samples are arranged"}}},
+      {"design",
+       {{"tools/study/sweep.cpp", "how samples are arranged"},
+        {"tools/study/sample.cpp", "how samples are arranged"},
+        {"tools/study/design_choice.cpp", "the part of a design that chooses by cost"}}},
   };
   const std::string& list = sources.at("tools/study/kinds.cpp");
   const std::regex entry("(\\w+)_kind\\(\\)"); // read from the source: builds without studies have this test, too

@@ -4,6 +4,7 @@
 #include "mbd/model/model_path.h"
 #include "mbd/run/quantity_text.h"
 #include "tools/study/case_limits.h"
+#include "tools/study/design_choice.h"
 #include "tools/study/holding.h"
 #include "tools/study/target_border.h"
 
@@ -26,6 +27,7 @@ FieldTable design_fields() {
       .doc("target: the probability of failure that is allowed at most; neither: all limits hold for certain");
   t.add("points", &S::points).at_least(3).at_most(1e6).doc("of the first look along the range: narrower intervals are not seen");
   t.add("tolerance", &S::tolerance).positive().at_most(0.01).doc("of a border, of its value");
+  t.add("cost", &S::cost).doc("formula of the variables: of all combinations of their values the cheapest that holds is sought");
   t.add<S, double>("cov", &S::cov).positive().at_most(1).doc("sampling stops at this coefficient of variation of the probability");
   t.add<S, long>("samples", &S::samples).at_least(1).at_most(1e10).doc("and at this number of samples, at each value that is sampled");
   t.add<S, long>("starts", &S::starts).at_least(1).at_most(1000).doc("of the search for design points at each value");
@@ -99,6 +101,12 @@ bool is_used(const Variable& v, const LoadedStudy& loaded) {
                      [&](const LimitState& l) { return names(l.expression, v.name); });
 }
 
+void check_use(const Variable& v, const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
+  if (is_used(v, loaded)) return;
+  problems.push_back(
+      {v.where, "no limit depends on variable '" + v.name + "': give it a path that a model uses, or name it in a limit state"});
+}
+
 void check_variables(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   const Study& study = loaded.study;
   const std::size_t sought = sought_variable(study);
@@ -107,13 +115,16 @@ void check_variables(const LoadedStudy& loaded, std::vector<Diagnostic>& problem
     return;
   }
   const Variable& v = study.variables[sought];
-  for (std::size_t i = sought + 1; i < study.variables.size(); ++i)
-    if (is_sought(study.variables[i]))
-      problems.push_back({study.variables[i].where, "variables '" + v.name + "' and '" + study.variables[i].name +
-                                                        "' both have a range or values: a design study seeks the value of one variable"});
-  if (!is_used(v, loaded))
-    problems.push_back(
-        {v.where, "no limit depends on variable '" + v.name + "': give it a path that a model uses, or name it in a limit state"});
+  for (std::size_t i = sought; i < study.variables.size(); ++i) {
+    const Variable& other = study.variables[i];
+    if (!is_sought(other)) continue;
+    check_use(other, loaded, problems);
+    if (i > sought && !is_choice(study))
+      problems.push_back(
+          {other.where, "variables '" + v.name + "' and '" + other.name +
+                            "' both have a range or values: a design study seeks the value of one variable. Among 'values' of "
+                            "several it chooses by 'cost'"});
+  }
 }
 
 // Tests the distributions at all values that are sought.
@@ -152,6 +163,7 @@ void check_design(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) 
     problems.push_back({study.where, "failed = \"safe\" does not go with a design: what has no trusted result counts as not holding"});
   const std::size_t before = problems.size();
   check_variables(loaded, problems);
+  if (is_choice(study)) return check_choice(loaded, problems);
   check_target(loaded, problems);
   if (problems.size() == before) check_laws(loaded, problems);
 }
@@ -162,6 +174,7 @@ void check_design(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) 
 struct DesignValue {
   double margin = 0.0; ///< least limit state, or reliability index less the target
   std::string doubt;   ///< if the margin is not known: why; the value counts as not holding then
+  std::string zero{};  ///< if the margin is zero to the rounding of the run: a sentence that says so; the value counts as not holding then
 };
 
 std::string text_of(const char* format, double a, double b = 0.0) {
@@ -188,6 +201,7 @@ public:
     }
     std::vector<HoldingInterval> intervals =
         holding_intervals(samples, is_list() ? std::vector<Crossing>{} : closed_crossings(function, samples, settings_.tolerance));
+    doubt_stretches_of_zeros(samples);
     if (target_ && !is_list()) correct_by_sampling(intervals);
     answer_.notes.insert(answer_.notes.begin(), sentence(intervals));
     if (intervals.empty()) answer_.degrade(Standing::not_met);
@@ -197,6 +211,16 @@ public:
   }
 
 private:
+  // A margin that is zero to rounding at one value is a border. At two neighbours it is a number that stays at its limit.
+  void doubt_stretches_of_zeros(const LineSamples& samples) {
+    for (std::size_t i = 1; i < samples.x.size(); ++i) {
+      DesignValue &before = known_.at(samples.x[i - 1]), &here = known_.at(samples.x[i]);
+      if (before.zero.empty() || here.zero.empty()) continue;
+      before.doubt = before.zero;
+      here.doubt = here.zero;
+    }
+  }
+
   static SamplingTarget sampling_of(const DesignSettings& s) {
     SamplingTarget sampling;
     sampling.cov = s.cov;
@@ -211,6 +235,7 @@ private:
   static double signed_margin(const DesignValue& value) {
     constexpr double k_least = 1e-12;
     if (!value.doubt.empty()) return std::min(std::isnan(value.margin) ? -1.0 : value.margin, -k_least);
+    if (!value.zero.empty()) return -k_least;
     return value.margin < 0.0 ? std::min(value.margin, -k_least) : std::max(value.margin, k_least);
   }
 
@@ -246,7 +271,8 @@ private:
     for (std::size_t i = 0; i < xs.size(); ++i) {
       const Outcome& outcome = rows[i].outcome;
       const auto least = std::min_element(outcome.numbers.begin() + static_cast<long>(first), outcome.numbers.end());
-      known_[xs[i]] = {*least, outcome.status == SampleStatus::ok ? "" : outcome.reason};
+      const bool is_undecided = outcome.status == SampleStatus::undecided, is_known = is_undecided || outcome.status == SampleStatus::ok;
+      known_[xs[i]] = {*least, is_known ? "" : outcome.reason, is_undecided && *least == 0.0 ? outcome.reason : ""};
       governing_[xs[i]] = static_cast<std::size_t>(least - outcome.numbers.begin()) - first;
     }
   }
@@ -314,6 +340,7 @@ private:
   std::string reason_at(double x) {
     const DesignValue& value = known_.at(x);
     if (!value.doubt.empty()) return value.doubt;
+    if (!value.zero.empty()) return value.zero;
     if (target_) return text_of("the reliability index is %.4g there.", value.margin + *target_);
     const std::size_t limit = governing_.at(x);
     const std::string& name = run_.study().limit_states[limit].name;
@@ -376,14 +403,14 @@ private:
   Answer answer_;
 };
 
-Answer run_design(StudyRun& run) { return Design(run).answer(); }
+Answer run_design(StudyRun& run) { return is_choice(run.study()) ? cheapest_option(run) : Design(run).answer(); }
 
 } // namespace
 
 StudyKind design_kind() {
   StudyKind kind;
   kind.name = "design";
-  kind.doc = "the values of a variable with which all limits hold, for certain or with a target reliability";
+  kind.doc = "the values of a variable with which all limits hold, for certain or with a target reliability, or the cheapest of several";
   kind.fields = design_fields();
   kind.holds<DesignSettings>();
   kind.shown = {"beta", "p", "confidence"};
@@ -394,8 +421,9 @@ StudyKind design_kind() {
                 {"holds to", "holds to", UnitOf::subject},
                 {"border of first order", "border of first order", UnitOf::subject},
                 {"checked at", "checked at", UnitOf::subject},
+                {"cost", "cost"},
                 {"margin", "margin"}};
-  kind.points = {{"design", "value", true}};
+  kind.points = {{"design", "value", true}, {"design", "option"}};
   kind.prepare = prepare_design;
   kind.check = check_design;
   kind.run = run_design;

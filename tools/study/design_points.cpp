@@ -34,7 +34,7 @@ std::vector<double> vector_of(const OT::Point& p) { return {p.begin(), p.end()};
 
 double g_at(LimitFunction& limit, const OT::Point& u) {
   const LimitValue value = limit.at_point(vector_of(u));
-  if (value.is_bad) throw BadSample("a run without result lay on the way");
+  if (value.is_missing) throw BadSample("a run without result lay on the way");
   return value.g;
 }
 
@@ -100,7 +100,7 @@ public:
             if (i != j || si == sj) add(i, 0.5 * si * h_ * (i == j ? 1.0 : 2.0), j, 0.5 * sj * h_ * (i == j ? 1.0 : 2.0));
     const std::vector<LimitValue>& g = limit_->at(points);
     for (const LimitValue& value : g)
-      if (value.is_bad) throw BadSample("a run without result lay on the way");
+      if (value.is_missing) throw BadSample("a run without result lay on the way");
     OT::SymmetricTensor tensor(n, 1);
     std::size_t k = 1;
     for (std::size_t i = 0; i < n; ++i)
@@ -254,7 +254,7 @@ std::vector<std::vector<double>> starts_of(LimitFunction& limit, long count, con
   const std::vector<LimitValue> values = limit.at(points);
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < looks.size(); ++i)
-    if (!values[i].is_bad) order.push_back(i);
+    if (!values[i].is_missing) order.push_back(i);
   const double sign = found.is_origin_failing ? -1.0 : 1.0;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return sign * values[a].g < sign * values[b].g; });
   std::vector<std::vector<double>> starts, taken;
@@ -279,7 +279,7 @@ DesignPoints find_design_points(LimitFunction& limit, bool is_second_order) {
   DesignPoints found;
   const long before = limit.asked(), last = before + budget_of(limit);
   const LimitValue value = limit.at_point(origin);
-  found.is_origin_failing = !value.is_bad && value.g < 0.0;
+  found.is_origin_failing = !value.is_missing && value.g < 0.0;
   (void)search_from(limit, origin, last, found);
   for (const std::vector<double>& start : starts_of(limit, settings.starts - 1, found)) {
     if (limit.asked() >= last) {

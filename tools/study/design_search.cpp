@@ -45,7 +45,7 @@ public:
   SearchEnd from(std::vector<double> start, const std::vector<std::vector<double>>& known) {
     at_.u = std::move(start);
     const LimitValue value = limit_.at_point(at_.u);
-    if (value.is_bad) return ended_badly();
+    if (value.is_missing) return ended_badly();
     at_.g = value.g;
     for (int step = 0; step < k_most_steps; ++step) {
       const auto gradient = gradient_at(limit_, at_.u, limit_.settings().difference);
@@ -91,7 +91,7 @@ private:
   // Tests the linearisation: returns true if g at its predicted zero is less than 0.01 of its previous value.
   bool is_plane(const std::vector<double>& aim) {
     const LimitValue value = limit_.at_point(aim);
-    return !value.is_bad && std::abs(value.g) < 0.01 * std::abs(at_.g);
+    return !value.is_missing && std::abs(value.g) < 0.01 * std::abs(at_.g);
   }
 
   [[nodiscard]] double merit(const std::vector<double>& u, double g, double c) const { return 0.5 * product(u, u) + c * std::abs(g); }
@@ -107,7 +107,7 @@ private:
     for (int k = 0; k <= k_most_halvings; ++k, share *= 0.5) {
       const std::vector<double> u = between(at_.u, aim, share);
       const LimitValue value = limit_.at_point(u);
-      if (value.is_bad) continue;
+      if (value.is_missing) continue;
       const bool falls = merit(u, value.g, c) <= before + k_part * share * slope;
       if (!falls && share * distance_between(at_.u, aim) > k_arrived) continue;
       at_.u = u;
@@ -143,7 +143,7 @@ std::optional<std::vector<double>> gradient_at(LimitFunction& limit, const std::
   const std::vector<LimitValue>& g = limit.at(points);
   std::vector<double> gradient(n);
   for (std::size_t i = 0; i < n; ++i) {
-    if (g[2 * i].is_bad || g[2 * i + 1].is_bad) return {};
+    if (g[2 * i].is_missing || g[2 * i + 1].is_missing) return {};
     gradient[i] = (g[2 * i].g - g[2 * i + 1].g) / (2.0 * h);
   }
   return gradient;

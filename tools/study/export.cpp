@@ -2,6 +2,7 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/io/csv.h"
+#include "tools/study/finding_part.h"
 
 #include <ostream>
 
@@ -45,6 +46,24 @@ void export_histories(const std::vector<Store::CurvePoint>& points, std::ostream
     text += "\n";
   }
   out << text;
+}
+
+long export_posterior(const std::vector<Finding>& findings, std::ostream& out) {
+  const PointRole role{"evidence", "posterior sample"};
+  std::string head, text, sample;
+  long rows = 0;
+  for (const Finding& f : findings) {
+    if (!role.has(f)) continue;
+    const bool is_new = rows == 0 || f.subject != sample;
+    if (is_new && rows > 0) text += "\n";
+    rows += is_new;
+    if (rows == 1) head += (head.empty() ? "" : ",") + f.quantity;
+    if (!is_new) text += ",";
+    append_number(text, f.value);
+    sample = f.subject;
+  }
+  if (rows > 0) out << head << "\n" << text << "\n";
+  return rows;
 }
 
 void export_findings(const std::vector<Finding>& findings, std::ostream& out) {

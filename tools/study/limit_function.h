@@ -8,11 +8,29 @@ namespace steplap::study {
 
 /// Value for one sample.
 struct LimitValue {
-  double g = 0.0;      ///< negative: failure
-  bool is_bad = false; ///< true if the run failed or cannot be trusted; g has no meaning then
+  double g = 0.0;          ///< negative: failure
+  bool is_missing = false; ///< true if the run failed or cannot be trusted; g has no meaning then
+  bool is_bad = false;     ///< true if it is unknown whether the sample fails: g is missing, or zero to the rounding of the run
 };
 
 struct ReliabilitySettings;
+
+/// Limit states of a study that fail together.
+class LimitSystem {
+public:
+  /// `is_any`: the system fails if any of the limit states does, otherwise only if all do.
+  LimitSystem(const LoadedStudy& loaded, const std::vector<std::string>& names, bool is_any);
+
+  /// Returns the least of the limit states, or the largest if all must fail.
+  [[nodiscard]] LimitValue value_of(const Outcome& outcome) const;
+  /// Returns the limit states in words, for findings.
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+private:
+  std::vector<std::size_t> places_; ///< indices of the limit states among the numbers
+  bool is_any_;
+  std::string text_;
+};
 
 /// The limit function g of a study. It counts failed runs and keeps the failing point closest to the origin.
 class LimitFunction {
@@ -22,6 +40,8 @@ public:
   [[nodiscard]] std::size_t dimension() const { return run_.law.dimension(); }
   /// Evaluates `points` of standard normal space, given one after the other. The result is valid until the next call.
   const std::vector<LimitValue>& at(const std::vector<double>& points);
+  /// Returns the limit states that are evaluated.
+  [[nodiscard]] const LimitSystem& system() const { return system_; }
   /// Evaluates a single point.
   [[nodiscard]] LimitValue at_point(const std::vector<double>& u);
 
@@ -31,7 +51,7 @@ public:
   /// Returns the number of samples requested so far, by all methods.
   [[nodiscard]] long asked() const { return run_.evaluator.asked(); }
   /// Returns the name of the system of limit states for findings.
-  [[nodiscard]] const std::string& subject() const { return subject_; }
+  [[nodiscard]] const std::string& subject() const { return system_.text(); }
   [[nodiscard]] long bad() const { return bad_; } ///< number of bad samples so far
   /// Returns the smallest distance of a failing point to the origin so far; infinite if there was none.
   [[nodiscard]] double nearest_failure() const { return nearest_; }
@@ -41,9 +61,7 @@ public:
 private:
   StudyRun& run_;
   const ReliabilitySettings& settings_;
-  std::vector<std::size_t> places_; ///< indices of the system's limit states among the numbers
-  bool is_any_;
-  std::string subject_;
+  LimitSystem system_;
   std::vector<double> values_;
   std::vector<LimitValue> limits_;
   long bad_ = 0;

@@ -1,10 +1,12 @@
 #include "tools/study/reliability.h"
 
+#include "tools/study/evidence.h"
 #include "tools/study/random_variables.h"
 #include "tools/study/samplers.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace steplap::study {
 
@@ -48,6 +50,8 @@ SamplingTarget target_of(const ReliabilitySettings& s) {
   return target;
 }
 
+double normal_density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi); }
+
 std::string text_of(const char* format, double a, double b = 0.0, double c = 0.0) {
   char text[240];
   std::snprintf(text, sizeof text, format, a, b, c);
@@ -60,6 +64,7 @@ public:
       : run_(run), limit_(run), settings_(settings_of<ReliabilitySettings>(run.study())), target_(target_of(settings_)) {}
 
   Answer answer() {
+    if (!run_.study().evidence.empty()) return answer_with_evidence();
     const bool has_form = asks("form") || asks("sorm");
     target_.test_confidence = 1.0 - k_alarm / static_cast<double>(comparisons());
     if (has_form || asks("importance_sampling")) points_ = find_design_points(limit_, asks("sorm"));
@@ -86,6 +91,12 @@ public:
   }
 
 private:
+  Answer answer_with_evidence() {
+    points_ = find_design_points(limit_, false);
+    sample_with_evidence(limit_, points_, target_, answer_);
+    return std::move(answer_);
+  }
+
   [[nodiscard]] bool asks(const char* method) const {
     return std::find(settings_.methods.begin(), settings_.methods.end(), method) != settings_.methods.end();
   }
@@ -214,6 +225,8 @@ private:
         answer_.findings.push_back({"form", name, variable, values[random[i]], std::nan(""), std::nan(""), points_.samples});
         answer_.findings.push_back(
             {"form", name, "importance of " + variable, p.alpha[i] * p.alpha[i], std::nan(""), std::nan(""), points_.samples});
+        answer_.findings.push_back({"form", name, "signed importance of " + variable, p.alpha[i] * std::abs(p.alpha[i]), std::nan(""),
+                                    std::nan(""), points_.samples});
       }
     }
     if (const DesignPoint* const nearest = best(); nearest && nearest->beta != 0.0) report_influence(*nearest);
@@ -233,17 +246,33 @@ private:
       const std::string& name = run_.study().variables[random[i]].name;
       put("beta by mean of " + name, slopes[i].by_mean);
       put("beta by standard deviation of " + name, slopes[i].by_deviation);
+      put("elasticity of the probability by mean of " + name,
+          -normal_density(point.beta) / normal_cdf(-point.beta) * slopes[i].by_mean * run_.law.mean(i));
       put("probability with a mean 10 % larger of " + name,
           normal_cdf(-(point.beta + slopes[i].by_mean * 0.1 * std::abs(run_.law.mean(i)))));
       if (!run_.law.is_independent()) continue;
       const double share = point.alpha[i] * point.alpha[i];
-      put("probability with half the scatter of " + name, normal_cdf(-point.beta / std::sqrt(1.0 - 0.75 * share)));
+      const double halved = normal_cdf(-point.beta / std::sqrt(1.0 - 0.75 * share));
+      put("probability with half the scatter of " + name, halved);
       put("omission factor of " + name, 1.0 / std::sqrt(1.0 - std::min(share, 1.0 - 1e-12)));
     }
-    if (!run_.law.is_independent())
+    if (run_.law.is_independent()) note_most_important(point, slopes);
+    else
       answer_.notes.push_back(
           "The variables are correlated: shares of single variables in the scatter are not defined, and importances are "
           "those of the independent variables from which they are made, in their order");
+  }
+
+  // Names the variable whose scatter contributes most, and what better knowledge or another mean of it would change.
+  void note_most_important(const DesignPoint& point, const std::vector<JointLaw::IndexSlope>& slopes) {
+    const auto most =
+        std::max_element(point.alpha.begin(), point.alpha.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const auto i = static_cast<std::size_t>(most - point.alpha.begin());
+    const double halved = normal_cdf(-point.beta / std::sqrt(1.0 - 0.75 * *most * *most)),
+                 safer = normal_cdf(-(point.beta + 0.1 * std::abs(slopes[i].by_mean * run_.law.mean(i))));
+    answer_.notes.push_back("'" + run_.study().variables[run_.law.random()[i]].name + "' matters most, to first order: " +
+                            text_of("half its scatter would change the probability from %.3g to %.3g, ", normal_cdf(-point.beta), halved) +
+                            text_of(slopes[i].by_mean > 0.0 ? "a mean 10 %% larger to %.3g." : "a mean 10 %% smaller to %.3g.", safer));
   }
 
   void add(const char* method, const char* quantity, double value, const std::string& status) {
@@ -299,6 +328,7 @@ void check_reliability(const LoadedStudy& loaded, std::vector<Diagnostic>& probl
   for (const std::string& name : s.limit_states)
     if (std::find(names.begin(), names.end(), name) == names.end())
       problems.push_back({s.where, "there is no limit state '" + name + "'" + did_you_mean(name, names)});
+  check_evidence(loaded, problems);
 }
 
 Answer run_reliability(StudyRun& run) { return Reliability(run).answer(); }
@@ -317,16 +347,24 @@ StudyKind reliability_kind() {
   kind.holds<ReliabilitySettings>();
   kind.shown = {"methods", "limit_states", "combination", "cov", "confidence"};
   kind.draws_jointly = true;
+  kind.takes_evidence = true;
   kind.parts = {{"half scatter", "probability with half the scatter of ", UnitOf::none, 4},
                 {"larger mean", "probability with a mean 10 % larger of ", UnitOf::none, 4},
                 {"slope", "beta by mean of ", UnitOf::quotient, 4},
                 {"slope", "beta by standard deviation of ", UnitOf::quotient, 4},
                 {"omission", "omission factor of ", UnitOf::none, 4},
+                {"elasticity of P", "elasticity of the probability by mean of ", UnitOf::none, 4},
+                {"signed importance", "signed importance of "},
                 {"probability", "probability", UnitOf::none, 4},
+                {"prior", "without evidence", UnitOf::none, 4},
+                {"evidence", "chance of the evidence", UnitOf::none, 4},
+                {"evidence", "effective samples", UnitOf::none, 4},
+                {"posterior", "mean with evidence", UnitOf::subject},
+                {"posterior", "standard deviation with evidence", UnitOf::subject},
                 {"beta", "beta", UnitOf::none, 5},
                 {"importance", "importance of "},
                 {"factor", "factor"}}; // ratio of a probability by theory to one by sampling
-  kind.points = {{"form", "design point"}};
+  kind.points = {{"form", "design point"}, {"evidence", "posterior sample", true}};
   kind.check = check_reliability;
   kind.run = run_reliability;
   kind.drawn = reliability_drawn;

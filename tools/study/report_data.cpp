@@ -375,7 +375,7 @@ Json about_in(Store& store) {
 
 Json status_names() {
   Json names = Json::array();
-  for (int i = 0; i <= static_cast<int>(SampleStatus::not_a_number); ++i) names.push_back(name_of(static_cast<SampleStatus>(i)));
+  for (int i = 0; i <= static_cast<int>(SampleStatus::undecided); ++i) names.push_back(name_of(static_cast<SampleStatus>(i)));
   return names;
 }
 

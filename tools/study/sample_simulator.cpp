@@ -95,6 +95,26 @@ double of_events(const Response& r, const std::vector<Event>& events) {
   return r.measure == Measure::event_count ? static_cast<double>(count) : r.otherwise.value_or(std::numeric_limits<double>::infinity());
 }
 
+// Numbers of a run are known to this part of their value at best: margins of sliding joints differ by 2e-12 from 1.
+constexpr double k_rounding = 1e-10;
+
+// Returns true if a response is the lowest margin of joints one of which slid. More was then asked of the joint than it holds: its margin was
+// below 1. How far below is not known, because friction gives way.
+bool has_slipped(const Response& r, const std::vector<Event>& events) {
+  return r.measure == Measure::lowest && std::any_of(events.begin(), events.end(), [&](const Event& event) {
+           return is_slip(event.kind) && matches_pattern(event.element + ".margin", r.channel);
+         });
+}
+constexpr double k_below = 10.0 * k_rounding;
+
+// Returns true if the values of a response have the rounding of a run. Counts, verdicts and codes have none.
+bool has_rounding(const Response& r, const System& system) {
+  if (!r.expression.empty() || r.measure == Measure::event_count || r.measure == Measure::verdict) return false;
+  const std::vector<const Channel*> channels = channels_of(r, system);
+  return r.takes_time || std::any_of(channels.begin(), channels.end(), [](const Channel* c) { return c->codes.empty(); }) ||
+         channels.empty();
+}
+
 double value_of(const Response& r, const RunResult& result, const Judgement& judgement, double reserve) {
   if (r.measure == Measure::verdict) return static_cast<double>(judgement.verdict);
   if (r.measure == Measure::reserve) return reserve;
@@ -105,7 +125,8 @@ double value_of(const Response& r, const RunResult& result, const Judgement& jud
     return !range ? k_nan : r.measure == Measure::final_value ? range->final : range->first;
   }
   const Extreme e = extreme_of(r, result.ranges);
-  return r.takes_time && !std::isnan(e.value) ? e.t : e.value;
+  if (std::isnan(e.value)) return e.value;
+  return r.takes_time ? e.t : has_slipped(r, result.events) ? std::min(e.value, 1.0 - k_below) : e.value;
 }
 
 /// Running extremes of the channels of a response.
@@ -180,7 +201,7 @@ void worsen(Outcome& outcome, SampleStatus status, const std::string& reason) {
 } // namespace
 
 const char* name_of(SampleStatus status) {
-  static constexpr const char* k_names[] = {"ok", "stopped", "untrusted", "gave up", "impossible", "not a number"};
+  static constexpr const char* k_names[] = {"ok", "stopped", "untrusted", "gave up", "impossible", "not a number", "undecided"};
   return k_names[static_cast<int>(status)];
 }
 
@@ -274,6 +295,9 @@ SampleSimulator::SampleSimulator(const LoadedStudy& loaded) : loaded_(loaded) {
     names.push_back(l.name);
   }
   values_.resize(names.size());
+  for (std::size_t i = 0; i < study.responses.size(); ++i)
+    for (const auto& model : loaded.models)
+      if (study.responses[i].model == model->name && has_rounding(study.responses[i], *model->system)) measured_.push_back(i);
   for (const auto& model : loaded.models) runners_.push_back(std::make_unique<SharedRunData>(loaded, *model));
 }
 
@@ -373,19 +397,62 @@ void SampleSimulator::run_model(SharedRunData& runner, const double* values, Out
 }
 
 bool SampleSimulator::is_derived(const std::vector<double>& values, const Outcome& outcome) {
-  std::copy(values.begin(), values.end(), values_.begin());
-  std::copy(outcome.numbers.begin(), outcome.numbers.end(), values_.begin() + static_cast<long>(values.size()));
+  std::vector<double> numbers = outcome.numbers;
+  (void)derive(values.data(), numbers);
   const auto is_same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
   bool is_whole = true;
   for (std::size_t i = loaded_.study.responses.size(); i < outcome.numbers.size(); ++i)
     is_whole = is_whole && !std::isnan(outcome.numbers[i]);
   return outcome.curve.size() == loaded_.curve_size() && (outcome.status != SampleStatus::ok || is_whole) &&
-         std::all_of(expressions_.begin(), expressions_.end(),
-                     [&](const auto& of) { return is_same(of.second(values_.data()), outcome.numbers[of.first]); });
+         std::equal(numbers.begin(), numbers.end(), outcome.numbers.begin(), is_same);
+}
+
+void SampleSimulator::evaluate_formulas(std::vector<double>& all) const {
+  const std::size_t variables = loaded_.study.variables.size();
+  for (const auto& [place, expression] : expressions_) all[variables + place] = expression(all.data());
+}
+
+// Returns how far the rounding of the runs' numbers moves each number: the sum over all of them.
+std::vector<double> SampleSimulator::rounding_of_formulas(const std::vector<double>& all) const {
+  const std::size_t variables = loaded_.study.variables.size();
+  std::vector<double> rounding(all.size() - variables, 0.0);
+  for (const std::size_t i : measured_) {
+    if (all[variables + i] == loaded_.study.responses[i].otherwise) continue; // of an event that never happens
+    std::vector<double> largest(rounding.size(), 0.0);
+    for (const double side : {-1.0, 1.0}) {
+      std::vector<double> moved = all;
+      moved[variables + i] *= 1.0 + side * k_rounding;
+      evaluate_formulas(moved);
+      for (std::size_t k = 0; k < largest.size(); ++k)
+        largest[k] = std::max(largest[k], std::abs(moved[variables + k] - all[variables + k]));
+    }
+    for (std::size_t k = 0; k < rounding.size(); ++k) rounding[k] += largest[k];
+  }
+  return rounding;
+}
+
+// Computes the numbers that formulas define. A limit state that is smaller than its change by the rounding of the runs has no sign and
+// becomes zero. That happens at a border, and on whole stretches if friction that slides keeps a number at a constant, such as its share.
+// A zero that rounding does not change, such as a number of slips, is exact. Returns the index of the first limit state without sign; −1 if
+// there is none. Borders that are sought (LimitState::is_border) are not counted.
+int SampleSimulator::derive(const double* values, std::vector<double>& numbers) {
+  const std::size_t variables = loaded_.study.variables.size(), responses = loaded_.study.responses.size();
+  std::copy(values, values + variables, values_.begin());
+  std::copy(numbers.begin(), numbers.end(), values_.begin() + static_cast<long>(variables));
+  evaluate_formulas(values_);
+  std::copy(values_.begin() + static_cast<long>(variables), values_.end(), numbers.begin());
+  const std::vector<double> rounding = rounding_of_formulas(values_);
+  int undecided = -1;
+  for (std::size_t i = responses; i < numbers.size(); ++i) {
+    if (!(rounding[i] > 0.0 && std::abs(numbers[i]) <= rounding[i])) continue;
+    numbers[i] = 0.0;
+    if (undecided < 0 && !loaded_.study.limit_states[i - responses].is_border) undecided = static_cast<int>(i);
+  }
+  return undecided;
 }
 
 void SampleSimulator::run(const double* values, Outcome& outcome) {
-  const std::size_t variables = loaded_.study.variables.size(), numbers = loaded_.number_count();
+  const std::size_t numbers = loaded_.number_count();
   outcome.status = SampleStatus::ok;
   outcome.reason.clear();
   outcome.numbers.assign(numbers, k_nan);
@@ -394,12 +461,14 @@ void SampleSimulator::run(const double* values, Outcome& outcome) {
   const bool has_models = !runners_.empty();
   const double begin = has_models ? thread_cpu_seconds() : 0.0;
   for (const auto& runner : runners_) run_model(*runner, values, outcome);
-  std::copy(values, values + variables, values_.begin());
-  std::copy(outcome.numbers.begin(), outcome.numbers.end(), values_.begin() + static_cast<long>(variables));
-  for (const auto& [place, expression] : expressions_) values_[variables + place] = outcome.numbers[place] = expression(values_.data());
+  const int undecided = derive(values, outcome.numbers);
   for (std::size_t i = loaded_.study.responses.size(); i < numbers; ++i)
     if (std::isnan(outcome.numbers[i]))
       worsen(outcome, SampleStatus::not_a_number, "limit state '" + loaded_.number_names()[i] + "' has no value");
+  if (undecided >= 0)
+    worsen(outcome, SampleStatus::undecided,
+           "limit state '" + loaded_.number_names()[static_cast<std::size_t>(undecided)] +
+               "' is zero to the rounding of the run: friction that slides keeps its share of 1. Ask for its event, or monitor the joint");
   if (has_models) outcome.cpu_seconds = thread_cpu_seconds() - begin;
 }
 

@@ -15,11 +15,12 @@ namespace steplap::study {
 /// Outcome of a sample's runs. The values are stored and must not change.
 enum class SampleStatus : int {
   ok = 0,
-  stopped = 1,     ///< an element ended the run: a joint came apart
-  untrusted = 2,   ///< the run is complete but cannot be trusted
-  gave_up = 3,     ///< the computation failed or could not start
-  impossible = 4,  ///< the model rejects the values
-  not_a_number = 5 ///< a limit state has no value
+  stopped = 1,      ///< an element ended the run: a joint came apart
+  untrusted = 2,    ///< the run is complete but cannot be trusted
+  gave_up = 3,      ///< the computation failed or could not start
+  impossible = 4,   ///< the model rejects the values
+  not_a_number = 5, ///< a limit state has no value
+  undecided = 6     ///< a limit state is zero to the rounding of runs, so that its sign is not known; its number is zero
 };
 [[nodiscard]] const char* name_of(SampleStatus status);
 
@@ -60,10 +61,14 @@ private:
   void evaluate_responses(const SharedRunData& runner, const Judgement& judgement, const RunResult& result, double reserve,
                           Outcome& outcome);
   void compare(const SharedRunData& runner, const RunResult& result, Outcome& outcome) const;
+  void evaluate_formulas(std::vector<double>& all) const;
+  [[nodiscard]] std::vector<double> rounding_of_formulas(const std::vector<double>& all) const;
+  int derive(const double* values, std::vector<double>& numbers);
 
   const LoadedStudy& loaded_;
   std::vector<std::unique_ptr<SharedRunData>> runners_;         ///< one per model
   std::vector<std::pair<std::size_t, Expression>> expressions_; ///< formulas, with the index of the number that they define
+  std::vector<std::size_t> measured_;                           ///< indices of the responses whose values have the rounding of a run
   std::vector<double> values_;                                  ///< values of variables and numbers
 };
 

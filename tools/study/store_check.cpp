@@ -64,7 +64,7 @@ void Store::damaged(const std::string& why) const {
 }
 
 SampleStatus Store::status_of(long status) const {
-  if (status < 0 || status > static_cast<long>(SampleStatus::not_a_number))
+  if (status < 0 || status > static_cast<long>(SampleStatus::undecided))
     damaged("a sample has the status " + std::to_string(status) + ", which there is not");
   return static_cast<SampleStatus>(status);
 }

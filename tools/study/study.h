@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace steplap::study {
@@ -107,6 +108,18 @@ struct LimitState {
   bool is_border = false; ///< true if a study kind searches its zeros, which are no failures
 };
 
+/// [[evidence]]: loads of the past that the system has held, or not. Variables that are neither drawn anew nor set had the values in them
+/// that they still have.
+struct Evidence {
+  bool is_held = true;
+  long times = 1;                             ///< number of such loads
+  std::vector<std::string> anew;              ///< variables with independent values in each load
+  std::vector<std::string> settings;          ///< "variable=value" of values that were measured, as given
+  std::vector<std::pair<int, double>> values; ///< these: index of the variable, value
+  std::vector<std::string> limit_states;      ///< of which any failed if it was not held; empty: those of the study's system
+  Location where;
+};
+
 /// Settings in the table of a study kind; each kind derives its own (study_kind.h).
 struct KindSettings {
   Location where; ///< location of the table, or of the study if it has none
@@ -133,6 +146,7 @@ struct Study {
   std::vector<Response> responses;
   std::vector<LimitState> limit_states;
   std::vector<History> histories;
+  std::vector<Evidence> evidence;
   std::shared_ptr<const KindSettings> settings; ///< type depends on the kind
   Location where;
 
@@ -158,6 +172,7 @@ struct StudyTable {
 [[nodiscard]] FieldTable response_fields();
 [[nodiscard]] FieldTable limit_state_fields();
 [[nodiscard]] FieldTable history_fields();
+[[nodiscard]] FieldTable evidence_fields();
 /// Returns all tables, including those of the kinds, in the order of a file.
 [[nodiscard]] std::vector<StudyTable> study_tables();
 

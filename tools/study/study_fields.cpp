@@ -111,13 +111,24 @@ FieldTable history_fields() {
   return t;
 }
 
+FieldTable evidence_fields() {
+  FieldTable t;
+  t.add("held", &Evidence::is_held).doc("true: no limit state failed; false: one did");
+  t.add("times", &Evidence::times).at_least(1).at_most(1000).doc("number of such loads");
+  t.add("anew", &Evidence::anew).doc("random variables that have another, independent value in each load: the shock, not the clamping");
+  t.add("set", &Evidence::settings).doc("values that were measured: \"shock = 0.8\", with a unit if need be");
+  t.add("limit_states", &Evidence::limit_states).doc("of another model, of that load; those of the study if none is named");
+  return t;
+}
+
 std::vector<StudyTable> study_tables() {
   std::vector<StudyTable> tables{{"", "top-level keys of a study file", false, header_fields()},
                                  {"variable", "a number that is not known, or that is to be tried", true, variable_fields("*")},
                                  {"correlation", "of two variables with distributions", true, correlation_fields()},
                                  {"response", "a number made of a run", true, response_fields()},
                                  {"limit_state", "fails where its expression is negative", true, limit_state_fields()},
-                                 {"history", "a measured record that a fit compares a channel with", true, history_fields()}};
+                                 {"history", "a measured record that a fit compares a channel with", true, history_fields()},
+                                 {"evidence", "loads of the past that have been held, or not", true, evidence_fields()}};
   for (const StudyKind& kind : study_kinds()) tables.push_back({kind.name, "settings of kind = \"" + kind.name + "\"", false, kind.fields});
   return tables;
 }

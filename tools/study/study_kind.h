@@ -29,6 +29,7 @@ struct StudyKind {
   std::shared_ptr<KindSettings> (*create)() = nullptr;
   std::vector<std::string> shown{};  ///< fields of its table that the page shows
   bool takes_histories = false;      ///< true if it uses measured records
+  bool takes_evidence = false;       ///< true if it uses loads of the past
   bool draws_jointly = false;        ///< true if variables are drawn with their correlations, not set one by one
   bool seeks_a_mean = false;         ///< true if a variable may have a distribution and the values that are tried for its mean
   bool begins_with_sentence = false; ///< true if the first note of the answer is the answer as a sentence

@@ -19,6 +19,7 @@
 #include "transformer/program.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -37,10 +38,11 @@ std::string list_text(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string kinds_with_histories() {
+// Returns the kinds that take something, in words.
+std::string kinds_with(bool StudyKind::*takes) {
   std::string text;
   for (const StudyKind& kind : study_kinds())
-    if (kind.takes_histories) text += (text.empty() ? "'" : " or '") + kind.name + "'";
+    if (kind.*takes) text += (text.empty() ? "'" : " or '") + kind.name + "'";
   return text;
 }
 
@@ -73,6 +75,7 @@ public:
     read_array("limit_state", [this](Node& entry) { read_limit_state(entry); });
     read_array("history", [this](Node& entry) { read_history(entry); });
     read_array("correlation", [this](Node& entry) { read_correlation(entry); });
+    read_array("evidence", [this](Node& entry) { read_evidence(entry); });
     for (const StudyKind& kind : study_kinds()) read_settings(kind);
     stop_if_wrong();
     loaded_.models.assign(models_.begin(), models_.end());
@@ -387,7 +390,7 @@ private:
     reading.subject = subject_text("history", entry_name(entry));
     const std::size_t before = problems_.size();
     read_table(entry, history_fields(), &h, reading);
-    if (!kind_->takes_histories) add(h.where, "a [[history]] is for studies of the kind " + kinds_with_histories());
+    if (!kind_->takes_histories) add(h.where, "a [[history]] is for studies of the kind " + kinds_with(&StudyKind::takes_histories));
     else if (models_.empty()) add(h.where, "the study has no model to compare history '" + h.name + "' with");
     else if (h.model.empty() && models_.size() > 1)
       add(h.where, "history '" + h.name + "': say which 'model' was measured: " + list_text(model_names()));
@@ -421,6 +424,42 @@ private:
       if (std::set(other.between.begin(), other.between.end()) == std::set(c.between.begin(), c.between.end()))
         return add(c.where, "the correlation of " + list_text(c.between) + " is given already");
     study_.correlations.push_back(std::move(c));
+  }
+
+  void read_evidence(Node& entry) {
+    Evidence e;
+    e.where = entry.where();
+    for (const char* key : {"anew", "set", "limit_states"}) make_list(entry, key);
+    TableReading reading;
+    reading.subject = "[[evidence]]";
+    const std::size_t before = problems_.size();
+    read_table(entry, evidence_fields(), &e, reading);
+    if (!kind_->takes_evidence) add(e.where, "[[evidence]] is for studies of the kind " + kinds_with(&StudyKind::takes_evidence));
+    if (problems_.size() != before) return;
+    for (const std::string& text : e.settings) read_measured_value(text, entry.find("set")->where(), e);
+    study_.evidence.push_back(std::move(e));
+  }
+
+  // Reads "shock = 0.8" or "pressure = 80 kPa".
+  void read_measured_value(const std::string& text, const Location& where, Evidence& e) {
+    const std::size_t sign = text.find('=');
+    const auto trimmed = [](const std::string& part) {
+      const std::size_t first = part.find_first_not_of(' '), last = part.find_last_not_of(' ');
+      return first == std::string::npos ? std::string() : part.substr(first, last - first + 1);
+    };
+    if (sign == std::string::npos) return add(where, "'" + text + "' is no measured value: write \"variable = value\"");
+    const std::string name = trimmed(text.substr(0, sign)), given = trimmed(text.substr(sign + 1));
+    const int v = study_.index_of_variable(name);
+    if (v < 0) return add(where, "there is no variable '" + name + "'" + did_you_mean(name, loaded_.variable_names()));
+    double value = 0.0;
+    const auto [rest, status] = std::from_chars(given.data(), given.data() + given.size(), value);
+    if (status != std::errc() || rest != given.data() + given.size()) {
+      const Quantity quantity = parse_quantity(given, study_.variables[static_cast<std::size_t>(v)].unit);
+      if (!quantity.problem.empty()) return add(where, "'" + text + "': " + quantity.problem);
+      value = quantity.value;
+    }
+    if (!std::isfinite(value)) return add(where, "'" + text + "': the value must be finite");
+    e.values.emplace_back(v, value);
   }
 
   void check_names() {

@@ -1,6 +1,7 @@
 #include "tools/study/sweep.h"
 
 #include "mbd/base/number_text.h"
+#include "tools/study/grid.h"
 
 #include <cmath>
 
@@ -100,20 +101,6 @@ private:
   std::vector<double> points_;
 };
 
-void sweep_grid(const std::vector<std::vector<double>>& levels, Sweeper& sweeper) {
-  std::vector<std::size_t> place(levels.size(), 0);
-  std::vector<double> point(levels.size());
-  for (bool is_over = false; !is_over;) {
-    for (std::size_t i = 0; i < levels.size(); ++i) point[i] = levels[i][place[i]];
-    sweeper.add(point);
-    is_over = true;
-    for (std::size_t i = levels.size(); i-- > 0 && is_over;) { // the last variable changes fastest
-      is_over = ++place[i] == levels[i].size();
-      if (is_over) place[i] = 0;
-    }
-  }
-}
-
 void sweep_list(const std::vector<std::vector<double>>& levels, Sweeper& sweeper) {
   std::size_t longest = 1;
   for (const auto& list : levels) longest = std::max(longest, list.size());
@@ -173,7 +160,7 @@ Answer run_sweep(StudyRun& run) {
   Sweeper sweeper(run);
   const std::string& design = settings_of<SweepSettings>(run.study()).design;
   run.evaluator.expect(points_of(design, levels));
-  if (design == "grid") sweep_grid(levels, sweeper);
+  if (design == "grid") visit_grid(levels, [&](const std::vector<double>& point) { sweeper.add(point); });
   else if (design == "list") sweep_list(levels, sweeper);
   else sweep_one_at_a_time(levels, run.law.nominal(), sweeper);
   sweeper.flush();

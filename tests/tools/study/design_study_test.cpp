@@ -286,3 +286,135 @@ TEST_CASE("a design study that is repeated asks for the same samples") {
   REQUIRE(bench.run(text).code == 0);
   CHECK(bench.samples() == before);
 }
+
+// The paper's joints slide below 29.985 kPa. Their margin is then 1 to rounding, on either side of it.
+TEST_CASE("a joint that slides does not hold, however its margin is rounded") {
+  StudyBench bench;
+  bench.write("sliding.toml", "format = 1\nextends = \"" STEPLAP_SOURCE "/models/paper/no_interference.toml\"\n[simulation]\n"
+                              "integrator = \"dop853\"\ntolerance = 1e-8\n");
+  const std::string model = "model = \"sliding.toml\"\n",
+                    pressure = "[[variable]]\nname = \"pressure\"\npath = \"core.core.pressure\"\nvalues = [\"26 kPa\", \"28 kPa\", \"31 "
+                               "kPa\"]\n",
+                    margin = "[[response]]\nname = \"margin\"\nchannel = \"* joint.margin\"\nwhat = \"lowest\"\n";
+  const auto limit = [](const std::string& expression) {
+    return "[[limit_state]]\nname = \"slip\"\nexpression = \"" + expression + "\"\n";
+  };
+  // 1.01 margin − 1.01 is rounded to zero or to either side of it where margin − 1 is not.
+  for (const std::string expression : {"margin - 1", "1.01*margin - 1.01", "1e6*(margin - 1)"}) {
+    CAPTURE(expression);
+    const Outcome outcome = bench.run(model + "kind = \"design\"\n" + pressure + margin + limit(expression), {"--restart"});
+    CAPTURE(outcome.err);
+    REQUIRE(outcome.code == 0);
+    CHECK(has(first_line(outcome.out), "All limits hold if 'pressure' is at 31 kPa."));
+    CHECK(has(bench.find("design", "holds from").status, "'slip' is negative"));
+  }
+  const Outcome sweep = bench.run(model + "kind = \"sweep\"\n" + pressure + margin + limit("margin - 1"), {"--restart"});
+  CHECK(sweep.code == 0);
+  CHECK(bench.find("sweep", "lowest", "slip").value < -1e-10);
+}
+
+// The tank slides on the floor at every pressure, so that its friction has the share 1: its load is its capacity, by structure.
+TEST_CASE("a limit state that is zero to rounding on a whole stretch is open and does not hold") {
+  StudyBench bench;
+  bench.write("block.toml", k_block);
+  const std::string model = "model = \"block.toml\"\n", share = "[[response]]\nname = \"share\"\nchannel = \"deck friction.share\"\n"
+                                                                "what = \"highest\"\n[[limit_state]]\nname = \"grip\"\nexpression = ";
+  for (const std::string expression : {"1 - share", "0.7 - 0.7*share", "share - 1"}) { // of unknown sign either way round
+    CAPTURE(expression);
+    const Outcome design = bench.run(model + "kind = \"design\"\n[design]\npoints = 5\n" + k_friction + "range = [0.2, 0.4]\n" + share +
+                                         "\"" + expression + "\"\n",
+                                     {"--restart"});
+    CHECK(design.code == 5);
+    CHECK(has(first_line(design.out), "with no value of 'friction'"));
+    CHECK(has(design.out, "'grip' is zero to the rounding of the run"));
+    CHECK(has(design.out, "5 values have no trusted result"));
+  }
+  const Outcome sweep =
+      bench.run(model + "kind = \"sweep\"\n" + k_friction + "values = [0.2, 0.3]\n" + share + "\"1 - share\"\n", {"--restart"});
+  CHECK(sweep.code == 5);
+  CHECK(has(bench.samples(), "1,undecided,"));
+  // By sampling nothing is known either: the bounds are 0 and 1 where all blocks slide.
+  const Outcome reliability =
+      bench.run(model + "kind = \"reliability\"\n[reliability]\nmethods = [\"monte_carlo\", \"form\"]\nsamples = 100\n" + k_friction +
+                    "distribution = \"uniform\"\nlow = 0.2\nhigh = 0.4\n" + share + "\"1 - share\"\n",
+                {"--restart"});
+  CHECK(reliability.code != 0);
+  CHECK(bench.find("monte_carlo", "probability, runs without result as safe").value == 0.0);
+  CHECK(bench.find("monte_carlo", "probability, runs without result as unsafe").value == 1.0);
+}
+
+// Zeros without rounding hold as before: a code of the friction of a block that sticks, and the number of its slips.
+TEST_CASE("a limit state that is exactly zero holds") {
+  StudyBench bench;
+  bench.write("block.toml", k_block); // 0.6 g: it slides below a friction of 0.6
+  for (const std::string expression : {"1 - mode", "0 - slips"}) {
+    CAPTURE(expression);
+    const Outcome outcome = bench.run("model = \"block.toml\"\nkind = \"design\"\n[design]\npoints = 5\n" + k_friction +
+                                          "range = [0.5, 0.7]\n[[response]]\nname = \"mode\"\nchannel = \"deck friction.mode\"\nwhat = "
+                                          "\"highest\"\n[[response]]\nname = \"slips\"\nwhat = "
+                                          "\"count\"\nevent = \"slips*\"\n[[limit_state]]\nname = \"firm\"\nexpression = \"" +
+                                          expression + "\"\n",
+                                      {"--restart"});
+    CAPTURE(outcome.err);
+    CAPTURE(outcome.out);
+    REQUIRE(outcome.code == 0);
+    CHECK(bench.find("design", "holds from").value == doctest::Approx(0.6).epsilon(1e-4));
+  }
+}
+
+// x springs of 1 kN/m each and y of 3 kN/m carry 5 kN/m or more. They cost 1 and 2 each.
+TEST_CASE("the cheapest of all options that hold is chosen, and the dearer ones are listed") {
+  StudyBench bench;
+  const std::string text = "kind = \"design\"\n[design]\ncost = \"x + 2*y\"\n[[variable]]\nname = \"x\"\nvalues = [0, 1, 2, 3, 4, 5]\n"
+                           "[[variable]]\nname = \"y\"\nvalues = [0, 1, 2]\n"
+                           "[[limit_state]]\nname = \"stiffness\"\nexpression = \"x + 3*y - 5\"\n";
+  const Outcome outcome = bench.run(text);
+  CAPTURE(outcome.err);
+  CAPTURE(outcome.out);
+  REQUIRE(outcome.code == 0);
+  // 2 + 3 = 5 costs 4; so does 0 + 6, the first in the order of the grid. 5 and 0 cost 5.
+  CHECK(has(first_line(outcome.out), "The cheapest of 11 options that hold, of 18 tried, is 'x' = 0, 'y' = 2 at a cost of 4."));
+  CHECK(has(first_line(outcome.out), "does not hold: limit state 'stiffness' is negative"));
+  double last = 0.0;
+  for (int k = 1; k <= 11; ++k) {
+    const std::string name = "option " + std::to_string(k);
+    const double x = bench.find("design", "x", name).value, y = bench.find("design", "y", name).value;
+    const double cost = bench.find("design", "cost", name).value;
+    CHECK(x + 3.0 * y >= 5.0);
+    CHECK(cost == x + 2.0 * y);
+    CHECK(cost >= last);
+    last = cost;
+  }
+  CHECK(bench.find("design", "margin", "option 12").value < 0.0); // those that do not hold come last
+}
+
+TEST_CASE("a cheaper option whose result is unknown leaves the choice open") {
+  StudyBench bench;
+  const auto text = [](const std::string& limit) {
+    return "kind = \"design\"\n[design]\ncost = \"x\"\n[[variable]]\nname = \"x\"\nvalues = [1, 2, 3]\n[[limit_state]]\nname = "
+           "\"limit\"\nexpression = \"" +
+           limit + "\"\n";
+  };
+  const Outcome open = bench.run(text("sqrt(x - 1.5)"));
+  CHECK(open.code == 5);
+  CHECK(has(open.out, "1 cheaper option is open"));
+  CHECK(has(first_line(open.out), "is 'x' = 2 at a cost of 2."));
+  const Outcome none = bench.run(text("x - 4"), {"--restart"});
+  CHECK(none.code == 5);
+  CHECK(has(first_line(none.out), "None of 3 options holds. Nearest is 'x' = 3: limit state 'limit' is negative"));
+}
+
+TEST_CASE("a choice that cannot be made is refused with its place") {
+  const auto refused = [](const std::string& cost, const std::string& variable, const std::string& more = "") {
+    StudyBench bench;
+    const Outcome outcome = bench.run("kind = \"design\"\n[design]\ncost = \"" + cost + "\"\n" + more + "[[variable]]\nname = \"x\"\n" +
+                                      variable + "\n[[limit_state]]\nname = \"limit\"\nexpression = \"x\"\n");
+    CHECK(outcome.code == 3);
+    CHECK(has(outcome.err, "study.toml:"));
+    return outcome.err;
+  };
+  CHECK(has(refused("x", "range = [0, 1]"), "is among 'values'"));
+  CHECK(has(refused("y", "values = [0, 1]"), "'y'"));
+  CHECK(has(refused("1/x", "values = [0, 1]"), "has no finite value"));
+  CHECK(has(refused("x", "values = [0, 1]", "p = 0.1\n"), "hold for certain"));
+}

@@ -27,7 +27,7 @@ namespace {
 struct Options {
   std::string file;
   std::optional<std::string> store, sample, output, threads;
-  bool is_restarted = false, is_changed = false, is_findings = false, is_growth = false, is_histories = false;
+  bool is_restarted = false, is_changed = false, is_findings = false, is_growth = false, is_histories = false, is_posterior = false;
   bool is_reported = false, is_overwriting = false;
 };
 
@@ -185,13 +185,16 @@ Command export_command() {
                      store_option(o),
                      {"--findings", &o->is_findings, "", "what was found instead of the samples"},
                      {"--growth", &o->is_growth, "", "estimates as they grew instead of the samples"},
-                     {"--histories", &o->is_histories, "", "of a fit: what was measured, and what was found to fit it"}};
+                     {"--histories", &o->is_histories, "", "of a fit: what was measured, and what was found to fit it"},
+                     {"--posterior", &o->is_posterior, "", "with [[evidence]]: values that agree with it"}};
   command.run = [o](Console& console) {
     Store store(store_of(*o));
     if (o->is_findings) export_findings(store.findings(), console.out);
     else if (o->is_growth) export_findings(store.growth(), console.out);
     else if (o->is_histories) export_histories(store.histories(), console.out);
-    else export_samples(store, console.out);
+    else if (!o->is_posterior) export_samples(store, console.out);
+    else if (export_posterior(store.findings(), console.out) == 0)
+      throw UsageError("the store has no values that agree with evidence: a study with [[evidence]] that has ended keeps them");
     if (!console.out.flush()) throw UsageError("the export could not be written to its end");
     return ExitCode::done;
   };
