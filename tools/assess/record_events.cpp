@@ -139,6 +139,15 @@ void refuse_gravity_as_shock(const RecordEvents& record) {
   }
 }
 
+// Returns the corner frequency of the recorder's own low-pass, if the lines above the rows give it, Hz; otherwise infinity.
+double stated_low_pass(const RecordEvents& record) {
+  LineSource source(record.file);
+  std::vector<HeaderLine> lines;
+  for (std::string_view text; lines.size() < record.recording.layout.shape.first_data && source.next(text);)
+    lines.push_back({source.number(), std::string(text)});
+  return low_pass_of(metadata_of(lines)).value_or(std::numeric_limits<double>::infinity());
+}
+
 // Determines the clock time of time 0 of the record, if its start is given with date and time.
 void read_clock(RecordEvents& record) {
   const RecordLayout& layout = record.recording.layout;
@@ -198,7 +207,7 @@ RecordEvents read_without_events(const std::string& file, const EventReading& re
   }
   record.offset = first.conditioning().offset;
   record.rate = first.conditioner().rate();
-  record.bandwidth = first.conditioner().bandwidth();
+  record.bandwidth = std::min(first.conditioner().bandwidth(), stated_low_pass(record));
   record.is_filtered = reading.frequency_class.has_value();
   record.greatest = signal.greatest();
   find_missing_evidence(first.axes(), signal, record);
