@@ -356,3 +356,13 @@ TEST_CASE("a low-pass of the recorder that its file states limits the bandwidth"
   block.check_open("# Low-pass filter: 10 Hz\n" + rows, Evidence::bandwidth);
   block.check_open("# Bandwidth,0.02,kHz\n" + rows, Evidence::bandwidth);
 }
+
+TEST_CASE("a stretch named as rest in which the vehicle brakes is told, because its mean hides the braking") {
+  HoldingBlock block;
+  block.options.reading.gravity.reset();
+  const Journey braking(200.0, [](double t) { return 0.3 * std::clamp(std::min(t - 1.5, 3.5 - t) / 0.5, 0.0, 1.0); });
+  block.options.reading.rest = std::array{0.0, 1.4}; // with vibration of 0.1 g
+  block.check_decided(braking.csv());
+  block.options.reading.rest = std::array{0.0, 3.9};
+  block.check_open(braking.csv(), Evidence::unit);
+}
