@@ -9,13 +9,12 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr std::size_t k_many = 100, k_very_many = 200; // rows; shorter sequences may be equal by chance if the resolution is coarse
-constexpr std::size_t k_most_of_rest = 100000;         // rows
-constexpr double k_long = 0.2;                         // s
-constexpr double k_moves = 0.05 * k_gravity;           // m/s²; threshold for motion of another axis
-constexpr double k_coarse = 20.0;                      // steps of the converter; if another axis moves this far, this axis must change by
-                                                       // at least one step
-constexpr double k_often = 0.5;                        // of the rows; noise is larger than a step
+constexpr std::size_t k_many = 100;            // rows; shorter sequences may be equal by chance if the resolution is coarse
+constexpr std::size_t k_most_of_rest = 100000; // rows
+constexpr double k_long = 0.2;                 // s
+constexpr double k_moves = 0.05 * k_gravity;   // m/s²; threshold for motion of another axis
+constexpr double k_coarse = 20.0;              // steps of the converter; if another axis moves this far, this axis must change by at least
+                                               // one step
 constexpr double k_few_steps = 4.0, k_coupling = 0.05; // fraction of another axis' motion that an axis reads because of misalignment
 
 } // namespace
@@ -25,43 +24,42 @@ void AxisWatch::put(double t, const double* a, std::size_t axes) {
   if (rows_++ == 0) begin_ = t;
   if (t - begin_ <= 1.0 && rows_ <= k_most_of_rest)
     for (std::size_t i = 0; i < axes; ++i) first_second_[i].push_back(a[i]);
-  std::array<bool, 3> changes{};
-  for (std::size_t i = 0; i < axes; ++i) changes[i] = rows_ > 1 && a[i] != axes_[i].value;
   for (std::size_t i = 0; i < axes; ++i) {
     Axis& axis = axes_[i];
+    for (NoiseWatch& noise : axis.noise) noise.put(t, a[i]);
+    const bool is_changed = rows_ > 1 && a[i] != axis.value;
     axis.least = std::min(axis.least, a[i]), axis.greatest = std::max(axis.greatest, a[i]);
-    if (changes[i] || rows_ == 1) {
-      if (changes[i]) {
+    if (is_changed || rows_ == 1) {
+      if (is_changed) {
         ++axis.changes;
         axis.step = std::min(axis.step, std::abs(a[i] - axis.value));
         end_run(axis);
       }
       axis.value = a[i];
-      axis.now = {t, t, 0, 0.0, 0};
+      axis.now = {t, t, 0, 0.0};
       std::copy(a, a + axes, axis.low.begin());
       std::copy(a, a + axes, axis.high.begin());
     }
     axis.now.to = t;
     ++axis.now.rows;
-    bool others_change = axes > 1;
     for (std::size_t k = 0; k < axes; ++k) {
       if (k == i) continue;
       axis.low[k] = std::min(axis.low[k], a[k]), axis.high[k] = std::max(axis.high[k], a[k]);
       axis.now.others = std::max(axis.now.others, axis.high[k] - axis.low[k]);
-      others_change &= changes[k];
     }
-    axis.now.others_changes += others_change;
   }
 }
 
-void AxisWatch::end_run(Axis& axis) const {
+void AxisWatch::end_run(Axis& axis) {
   const Run& run = axis.now;
-  if (run.rows > axis.longest.rows) axis.longest = run;
   if (run.rows >= k_many && run.to - run.from >= k_long && run.others > axis.moved.others) axis.moved = run;
 }
 
 void AxisWatch::finish() {
-  for (std::size_t i = 0; i < count_; ++i) end_run(axes_[i]);
+  for (std::size_t i = 0; i < count_; ++i) {
+    end_run(axes_[i]);
+    for (NoiseWatch& noise : axes_[i].noise) noise.finish();
+  }
 }
 
 double AxisWatch::rest(std::size_t axis) const {
@@ -83,14 +81,14 @@ std::optional<AxisWatch::Stuck> AxisWatch::stuck(std::size_t index) const {
   const Axis& axis = axes_[index];
   if (axis.changes == 0) return rows_ >= k_many ? std::optional(Stuck{axis.now.from, axis.now.to}) : std::nullopt;
   if (axis.moved.others >= std::max(k_moves, k_coarse * axis.step)) return Stuck{axis.moved.from, axis.moved.to};
-  // Without a shock in the interval the noise decides: the axis had noise before, and the other axes still have it.
-  const Run& run = axis.longest;
-  const auto share = [](std::size_t part, std::size_t all) {
-    return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(all, 1));
-  };
-  const bool was_noisy = rows_ - run.rows >= k_many && share(axis.changes, rows_ - run.rows) > k_often;
-  if (run.rows >= k_very_many && run.to - run.from >= k_long && was_noisy && share(run.others_changes, run.rows) > k_often)
-    return Stuck{run.from, run.to};
+  for (const NoiseWatch& noise : axis.noise) {
+    const auto silence = noise.silence(axis.step);
+    if (!silence) continue;
+    // At the end of the sensor's range a constant value is clipped.
+    const bool is_constant = silence->least == silence->greatest;
+    if (is_constant && (silence->least == axis.least || silence->greatest == axis.greatest)) continue;
+    return Stuck{silence->from, silence->to};
+  }
   return {};
 }
 

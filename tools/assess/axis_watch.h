@@ -1,5 +1,7 @@
-// Detects axes of a recorder that do not measure: an axis whose value stays constant while the others change.
+// Detects axes of a recorder that do not measure: constant while another moves, or without the noise that they have otherwise.
 #pragma once
+
+#include "tools/assess/noise_watch.h"
 
 #include <array>
 #include <cstddef>
@@ -20,7 +22,7 @@ public:
   struct Stuck {
     double from = 0.0, to = 0.0; ///< s
   };
-  /// Returns the interval in which the axis was constant while others changed; nothing if there is none.
+  /// Returns the interval in which the axis was constant while others moved, or had no noise; nothing if there is none.
   [[nodiscard]] std::optional<Stuck> stuck(std::size_t axis) const;
   /// Returns the median of the first second, m/s². A shock in this second would change a mean, but hardly the median.
   [[nodiscard]] double rest(std::size_t axis) const;
@@ -31,17 +33,17 @@ private:
   struct Run {
     double from = 0.0, to = 0.0;
     std::size_t rows = 0;
-    double others = 0.0;            ///< largest range of another axis during the run, m/s²
-    std::size_t others_changes = 0; ///< number of rows in which all other axes changed
+    double others = 0.0; ///< largest range of another axis during the run, m/s²
   };
   struct Axis {
     double value = 0.0, step = std::numeric_limits<double>::infinity(); ///< m/s²; smallest change of the value
     double least = std::numeric_limits<double>::infinity(), greatest = -std::numeric_limits<double>::infinity();
     std::size_t changes = 0;
-    Run now, moved, longest;             ///< current run; the long run in which other axes moved most; the longest run
+    Run now, moved;                      ///< current run; the long run in which other axes moved most
     std::array<double, 3> low{}, high{}; ///< minimum and maximum of all axes during the run
+    std::array<NoiseWatch, 2> noise{NoiseWatch(1), NoiseWatch(8)};
   };
-  void end_run(Axis& axis) const;
+  static void end_run(Axis& axis);
   [[nodiscard]] double others_range(std::size_t axis) const;
 
   std::array<Axis, 3> axes_;

@@ -12,7 +12,7 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_alive = 0.05 * k_gravity;          // m/s²; any transport by road, rail or crane moves a recorder more than this
+constexpr double k_alive = 0.05 * k_gravity;          // m/s² from rest; any transport by road, rail or crane moves a recorder more
 constexpr double k_hours = 7200.0, k_minutes = 120.0; // s; above these durations text uses hours or minutes
 
 std::string span_text(double seconds) {
@@ -34,6 +34,16 @@ std::optional<Stamp> instant(const std::string& text) {
 }
 
 MissingEvidence missing(const std::string& reason, const std::string& remedy) { return {Evidence::coverage, reason, remedy}; }
+
+// Returns the largest deviation of an axis from its reading at rest, m/s². A tilt or an offset of the sensor does not move the recorder.
+double largest_motion(const RecordEvents& record) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < record.recording.layout.axes.size(); ++i) {
+    const AxisFacts& axis = record.recording.facts.axes[i];
+    most = std::max({most, axis.greatest - record.rest[i], record.rest[i] - axis.least});
+  }
+  return most;
+}
 
 // Returns the duration of the voyage, s.
 double length_of(const Voyage& voyage) {
@@ -125,7 +135,7 @@ std::optional<MissingEvidence> uncovered(const std::vector<RecordEvents>& record
     if (record.recording.layout.is_peaks)
       return missing("'" + record.file + "' is a list of peaks, which does not state when the recorder was on.",
                      "Read a record with waveforms.");
-    for (const double value : record.greatest) greatest = std::max(greatest, value);
+    greatest = std::max(greatest, largest_motion(record));
     if (!voyage->is_clock) continue;
     if (!record.clock_ns)
       return missing("'" + record.file + "' does not state the date and time at which it began.",

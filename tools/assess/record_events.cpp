@@ -31,7 +31,7 @@ std::string sha256_of(const std::string& path) {
   return sum.hex();
 }
 
-// Computes the mean of each axis over an interval.
+// Computes the mean of each axis over an interval, and over its quarters.
 class StretchMean : public SampleSink {
 public:
   explicit StretchMean(const std::array<double, 2>& stretch) : stretch_(stretch) {}
@@ -39,31 +39,60 @@ public:
   void begin_segment(std::size_t) override {}
   void put(double t, const double* a) override {
     if (t < stretch_[0] || t > stretch_[1]) return;
-    ++count_;
-    for (std::size_t i = 0; i < axes_; ++i) sums_[i] += a[i];
+    const double share = (t - stretch_[0]) / (stretch_[1] - stretch_[0]);
+    Sums& quarter = quarters_[std::min(quarters_.size() - 1, static_cast<std::size_t>(4.0 * share))];
+    for (Sums* const sums : {&all_, &quarter}) {
+      ++sums->count;
+      for (std::size_t i = 0; i < axes_; ++i) sums->of_axes[i] += a[i];
+    }
   }
   void end_segment() override {}
-  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] std::size_t count() const { return all_.count; }
   [[nodiscard]] std::array<double, 3> means() const {
     std::array<double, 3> means{};
-    for (std::size_t i = 0; i < axes_; ++i) means[i] = sums_[i] / static_cast<double>(count_);
+    for (std::size_t i = 0; i < axes_; ++i) means[i] = all_.mean(i);
     return means;
+  }
+  // Returns the largest difference between the means of two quarters.
+  [[nodiscard]] double change(std::size_t axis) const {
+    double least = all_.mean(axis), greatest = least;
+    for (const Sums& quarter : quarters_)
+      if (quarter.count > 0) least = std::min(least, quarter.mean(axis)), greatest = std::max(greatest, quarter.mean(axis));
+    return greatest - least;
   }
 
 private:
+  struct Sums {
+    std::size_t count = 0;
+    std::array<double, 3> of_axes{};
+    [[nodiscard]] double mean(std::size_t axis) const { return of_axes[axis] / static_cast<double>(count); }
+  };
   std::array<double, 2> stretch_;
-  std::size_t axes_ = 0, count_ = 0;
-  std::array<double, 3> sums_{};
+  std::size_t axes_ = 0;
+  Sums all_;
+  std::array<Sums, 4> quarters_;
 };
 
-std::array<double, 3> rest_of(const std::string& file, const EventReading& reading) {
+StretchMean rest_of(const std::string& file, const EventReading& reading) {
   StretchMean mean(*reading.rest);
   LineSource source(file);
   static_cast<void>(read_record(source, reading.read, mean));
   if (mean.count() < 2)
     throw FileError(file, "'" + file + "' has no two samples from " + rounded_text((*reading.rest)[0]) + " s to " +
                               rounded_text((*reading.rest)[1]) + " s: give a stretch at rest within the record");
-  return mean.means();
+  return mean;
+}
+
+// Notes that the mean that is subtracted holds some braking or a curve. Vibration has no mean.
+void check_rest(const StretchMean& rest, RecordEvents& record) {
+  constexpr double k_still = 0.05 * k_gravity; // m/s²; 50 mg already shift the required pressure by 10 % (docs/evidence/recorders.md)
+  for (std::size_t i = 0; i < record.recording.layout.axes.size(); ++i)
+    if (const double change = rest.change(i); change > k_still)
+      return record.missing.push_back({Evidence::unit,
+                                       "In the stretch that was named as rest axis " +
+                                           std::string(1, record.recording.layout.axes[i].axis) + " changes by " + in_g(change) +
+                                           ": its mean, which is subtracted, is not that of rest.",
+                                       "Name a stretch in which nothing moved."});
 }
 
 // Subtracts gravity from an axis of the record, which is known only after the columns have been read.
@@ -139,6 +168,15 @@ void refuse_gravity_as_shock(const RecordEvents& record) {
   }
 }
 
+// Returns the corner frequency of the recorder's own low-pass, if the lines above the rows give it, Hz; otherwise infinity.
+double stated_low_pass(const RecordEvents& record) {
+  LineSource source(record.file);
+  std::vector<HeaderLine> lines;
+  for (std::string_view text; lines.size() < record.recording.layout.shape.first_data && source.next(text);)
+    lines.push_back({source.number(), std::string(text)});
+  return low_pass_of(metadata_of(lines)).value_or(std::numeric_limits<double>::infinity());
+}
+
 // Determines the clock time of time 0 of the record, if its start is given with date and time.
 void read_clock(RecordEvents& record) {
   const RecordLayout& layout = record.recording.layout;
@@ -179,7 +217,8 @@ RecordEvents read_without_events(const std::string& file, const EventReading& re
   record.file = file;
   record.rules = reading.rules;
   Conditioning conditioning = conditioning_of(reading);
-  if (reading.rest) conditioning.offset = rest_of(file, reading);
+  std::optional<StretchMean> rest;
+  if (reading.rest) conditioning.offset = rest.emplace(rest_of(file, reading)).means();
   constexpr double k_within = 0.25; // of a shock; before its begin and after its end less than this remains
   SignalWatch signal(k_within * shock_level(reading.rules));
   WithoutGravity first(conditioning, reading, signal);
@@ -198,9 +237,10 @@ RecordEvents read_without_events(const std::string& file, const EventReading& re
   }
   record.offset = first.conditioning().offset;
   record.rate = first.conditioner().rate();
-  record.bandwidth = first.conditioner().bandwidth();
+  record.bandwidth = std::min(first.conditioner().bandwidth(), stated_low_pass(record));
   record.is_filtered = reading.frequency_class.has_value();
   record.greatest = signal.greatest();
+  if (rest) check_rest(*rest, record);
   find_missing_evidence(first.axes(), signal, record);
   if (!reading.gravity || *reading.gravity != "none") refuse_gravity_as_shock(record);
   return record;
@@ -209,7 +249,7 @@ RecordEvents read_without_events(const std::string& file, const EventReading& re
 bool find_events(const EventReading& reading, const EventRules& rules, double longest, RecordEvents& record) {
   record.events.clear();
   Conditioning conditioning = conditioning_of(reading);
-  if (reading.rest) conditioning.offset = rest_of(record.file, reading);
+  if (reading.rest) conditioning.offset = rest_of(record.file, reading).means();
   double sum = 0.0;
   ShockFinder finder(rules, [&](const ShockEvent& event, const Window& window) {
     sum += event.end - event.begin;

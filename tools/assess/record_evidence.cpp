@@ -19,6 +19,7 @@ constexpr double k_least_band =
     49.0; // Hz; with 25 Hz the required pressure of a joint has errors up to 22 %, with 50 Hz up to 4 % (docs/evidence/recorders.md)
 constexpr double k_no_gravity = 0.02 * k_gravity, k_gravity_seen = 0.9 * k_gravity,
                  k_gravity_most = 1.1 * k_gravity; // m/s²; magnitude at rest
+constexpr double k_offset = 0.1 * k_gravity;       // m/s²; 50 mg already shift the required pressure by 10 % (docs/evidence/recorders.md)
 constexpr double k_harmless_hole = 0.005;          // s; a shock within it has frequencies above 100 Hz, to which joints do not respond
 
 std::string in_g(double a) { return rounded_text(a / k_gravity, 3) + " g"; }
@@ -155,8 +156,8 @@ private:
     for (std::size_t i = 0; i < layout_.axes.size(); ++i) {
       if (const auto stuck = axes_.stuck(i))
         return add(Evidence::dead,
-                   "Axis " + letter(record_, i) + " keeps one value from " + rounded_text(stuck->from, 7) + " s to " +
-                       rounded_text(stuck->to, 7) + " s: it did not measure.",
+                   "Axis " + letter(record_, i) + " keeps one value or a few, without its noise, from " + rounded_text(stuck->from, 7) +
+                       " s to " + rounded_text(stuck->to, 7) + " s: it did not measure.",
                    "Have the recorder checked.");
       if (axes_.is_insensitive(i))
         return add(Evidence::dead,
@@ -168,9 +169,15 @@ private:
 
   void find_unit() {
     const double size = record_.size_at_rest();
-    if (size < k_no_gravity || (size > k_gravity_seen && size < k_gravity_most)) return;
-    add(Evidence::unit, "At rest the record reads " + in_g(size) + " in all, which is neither gravity nor nothing.",
-        "Check the unit, and name a stretch at rest.");
+    if (size >= k_no_gravity && (size <= k_gravity_seen || size >= k_gravity_most))
+      return add(Evidence::unit, "At rest the record reads " + in_g(size) + " in all, which is neither gravity nor nothing.",
+                 "Check the unit, and name a stretch at rest.");
+    for (std::size_t i = 0; i < layout_.axes.size(); ++i)
+      if (const double left = record_.rest[i] - record_.offset[i]; std::abs(left) > k_offset && std::abs(left) < k_gravity_seen)
+        return add(Evidence::unit,
+                   "Axis " + letter(record_, i) + " reads " + in_g(left) +
+                       " at rest, which is left in the record and adds to its shocks, or takes from them.",
+                   "Name a stretch at rest (rest FROM,TO), or let the model stand as inclined as the recorder did.");
   }
 
   RecordEvents& record_;
@@ -202,9 +209,10 @@ double shock_level(const EventRules& rules) { return std::min(rules.threshold, E
 void find_missing_evidence(const AxisWatch& axes, const SignalWatch& signal, RecordEvents& record) { Finder(axes, signal, record).find(); }
 
 // Finds peaks whose top is too wide. The time above 0.9 of the peak is 0.43 of the width at half height for a half sine, 0.41 for a
-// haversine, 0.2 for a triangle. A wider top indicates clipping, or braking and curves, which last longer.
+// haversine, 0.2 for a triangle; with noise of 2 % of the peak it exceeds 0.5 for one half sine in 500. A wider top indicates a sensor that
+// saturates, or braking and curves, which last longer.
 void find_rounded_tops(const std::vector<RecordEvents>& records, std::vector<MissingEvidence>& missing) {
-  constexpr double k_wide = 0.6, k_longest = 0.3, k_near = 0.95; // fraction; s; of the record's extreme
+  constexpr double k_wide = 0.5, k_longest = 0.3, k_near = 0.95; // fraction; s; of the record's extreme
   constexpr double k_samples = 3.0;                              // above 0.9 of the peak; with fewer the width is not reliable
   constexpr double k_seen = 0.25;                                // fraction of a shock; lower tops are not relevant
   const auto is_clipped = [](const MissingEvidence& m) { return m.item == Evidence::clipped; };
@@ -255,7 +263,7 @@ bool is_ordinary_end(const std::string& remark) {
   for (const char c : text) {
     if (std::isalpha(static_cast<unsigned char>(c)) != 0) word += c;
     else take();
-    is_known &= static_cast<unsigned char>(c) < 0x80 && c != '\\'; // text in other alphabets, and bytes that are not text
+    is_known &= static_cast<unsigned char>(c) < 0x80 && c != '\\' && c != '?'; // text in other alphabets, and bytes that are not text
   }
   take();
   return is_known && (has_word || text.find_first_of("0123456789") == std::string::npos);

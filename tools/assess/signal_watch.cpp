@@ -1,36 +1,62 @@
 #include "tools/assess/signal_watch.h"
 
+#include "transformer/recorder/fields.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace steplap::assess {
 
-void SignalWatch::begin(const RecordLayout& layout, double) {
+namespace {
+
+constexpr double k_edge = 0.05;             // s; half a period of 10 Hz, so that an end at a zero crossing is seen, and 3 samples at least
+constexpr std::size_t k_least_edge = 3;     // samples; a single one may be a zero crossing
+constexpr double k_near = 0.5;              // s; compared with the end
+constexpr double k_rises = 5.0;             // times the largest value next to it: more than noise does
+constexpr double k_felt = 0.05 * k_gravity; // m/s²; less is no begin of a shock
+
+} // namespace
+
+void SignalWatch::begin(const RecordLayout& layout, double rate) {
   axes_ = layout.axes.size();
   for (std::size_t i = 0; i < axes_; ++i) letters_[i] = layout.axes[i].axis;
+  edge_ = std::max(k_least_edge, static_cast<std::size_t>(std::ceil(k_edge * rate)));
+  near_ = edge_ + static_cast<std::size_t>(std::ceil(k_near * rate));
+  last_.assign(near_, {});
 }
 
-void SignalWatch::begin_segment(std::size_t) { samples_ = 0, is_noted_ = false; }
-
-void SignalWatch::note(bool is_begin, double t, std::size_t axis, double value) {
-  if (end_.count++ == 0) end_ = {is_begin, t, value, letters_[axis], 1};
-  is_noted_ = true;
-}
+void SignalWatch::begin_segment(std::size_t) { samples_ = 0; }
 
 void SignalWatch::put(double t, const double* plain, const double* filtered) {
-  for (std::size_t i = 0; i < axes_; ++i) {
-    greatest_[i] = std::max(greatest_[i], std::abs(filtered[i]));
-    if (samples_ < k_inspected && !is_noted_ && std::abs(plain[i]) > level_) note(true, t, i, plain[i]);
-  }
-  std::copy(plain, plain + axes_, last_[samples_++ % k_inspected].begin());
+  for (std::size_t i = 0; i < axes_; ++i) greatest_[i] = std::max(greatest_[i], std::abs(filtered[i]));
+  if (samples_ == 0) begin_ = t;
+  std::copy(plain, plain + axes_, last_[samples_++ % near_].begin());
   t_ = t;
+  if (samples_ == near_) inspect(true);
 }
 
 void SignalWatch::end_segment() {
-  is_noted_ = false;
-  for (std::size_t k = 0; k < std::min(samples_, k_inspected); ++k)
-    for (std::size_t i = 0; i < axes_; ++i)
-      if (!is_noted_ && std::abs(last_[k][i]) > level_) note(false, t_, i, last_[k][i]);
+  if (samples_ < near_) inspect(true);
+  inspect(false);
+}
+
+// Returns the largest magnitude of the kept samples from `from` to before `to`, counted from the oldest.
+double SignalWatch::largest(std::size_t axis, std::size_t from, std::size_t to) const {
+  const std::size_t oldest = samples_ - std::min(samples_, near_);
+  double most = 0.0;
+  for (std::size_t k = oldest + from; k < oldest + to; ++k) most = std::max(most, std::abs(last_[k % near_][axis]));
+  return most;
+}
+
+void SignalWatch::inspect(bool is_begin) {
+  const std::size_t kept = std::min(samples_, near_), edge = std::min(edge_, kept);
+  for (std::size_t i = 0; i < axes_; ++i) {
+    const double at_end = is_begin ? largest(i, 0, edge) : largest(i, kept - edge, kept);
+    const double next = is_begin ? largest(i, edge, kept) : largest(i, 0, kept - edge);
+    if (at_end <= level_ && (at_end <= k_felt || kept < near_ || at_end <= k_rises * next)) continue;
+    if (end_.count++ == 0) end_ = {is_begin, is_begin ? begin_ : t_, at_end, letters_[i], 1};
+    return;
+  }
 }
 
 } // namespace steplap::assess

@@ -6,19 +6,20 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 namespace steplap::assess {
 
 /// Receives the conditioned signal.
 class SignalWatch : public SignalSink {
 public:
-  /// A segment begins or ends during a shock if its first or last samples exceed `level`, m/s².
+  /// A segment begins or ends during a shock if its first or last 50 ms exceed `level`, m/s², or are far above what is next to them.
   explicit SignalWatch(double level) : level_(level) {}
 
   /// A begin or end of a segment during a shock.
   struct End {
     bool is_begin = true;
-    double t = 0.0, value = 0.0; ///< s; m/s²
+    double t = 0.0, value = 0.0; ///< s; m/s², largest value near the end
     char axis = 'x';
     std::size_t count = 0; ///< number of such ends in the record; 0: none
   };
@@ -33,15 +34,16 @@ public:
   void end_segment() override;
 
 private:
-  void note(bool is_begin, double t, std::size_t axis, double value);
-  static constexpr std::size_t k_inspected = 3; // samples inspected at an end; a single one may be a zero crossing
+  [[nodiscard]] double largest(std::size_t axis, std::size_t from, std::size_t to) const;
+  void inspect(bool is_begin);
   double level_;
-  std::size_t axes_ = 0, samples_ = 0;
+  std::size_t axes_ = 0;
+  std::size_t edge_ = 0, near_ = 0; ///< samples: at an end; at an end and next to it
   std::array<char, 3> letters_{};
   std::array<double, 3> greatest_{};
-  std::array<std::array<double, 3>, k_inspected> last_{};
-  bool is_noted_ = false;
-  double t_ = 0.0;
+  std::vector<std::array<double, 3>> last_; ///< the last near_ samples of the segment, as a ring
+  std::size_t samples_ = 0;
+  double begin_ = 0.0, t_ = 0.0;
   End end_;
 };
 

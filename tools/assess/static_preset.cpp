@@ -138,7 +138,8 @@ StaticPreset static_preset(const std::string& name_or_file) {
     known += preset.name + ", ";
   }
   throw std::invalid_argument("'" + name_or_file + "' is no preset of static loads: take one of " + known +
-                              "or name a file of your own that ends with .toml");
+                              "or name a file of your own that ends with .toml. Those of the CTU code for rail and sea areas are not built "
+                              "in, because its table of accelerations was not read");
 }
 
 std::vector<StaticLoad> loads_for(const StaticPreset& preset, Plane plane) {

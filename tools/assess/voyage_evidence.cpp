@@ -24,10 +24,10 @@ void find_axes(Assessment& a) {
     double seen = 0.0; // as seen by the models
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (is_used(i)) seen = std::max(seen, record.greatest[i]);
-    // A smaller shock counts if it is the largest of all axes, because a rotated recorder would show this.
-    constexpr double k_turned = 0.25;
+    // A smaller shock counts if it is more than half of what the models see: so a recorder reads that was turned by 27° or more.
+    constexpr double k_turned = 0.25, k_half = 0.5;
     for (std::size_t i = 0; i < axes.size(); ++i)
-      if (!is_used(i) && record.greatest[i] > (record.greatest[i] > seen ? k_turned : 1.0) * shock_level(record.rules))
+      if (!is_used(i) && record.greatest[i] > (record.greatest[i] > k_half * seen ? k_turned : 1.0) * shock_level(record.rules))
         a.missing.push_back({Evidence::axis,
                              "Axis " + std::string(1, axes[i]) + " of '" + record.file + "' reads up to " +
                                  rounded_text(record.greatest[i] / k_gravity, 3) +

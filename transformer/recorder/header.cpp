@@ -75,6 +75,18 @@ std::optional<SaidRate> rate_of(const Metadata& metadata) {
   return std::nullopt;
 }
 
+std::optional<double> low_pass_of(const Metadata& metadata) {
+  std::string unit;
+  const auto* said =
+      metadata.find({"lowpass", "lowpassfilter", "lowpassfrequency", "lowpasshz", "filter", "filterhz", "filterfrequency",
+                     "antialiasfilter", "antialiasingfilter", "cutoff", "cutofffrequency", "cornerfrequency", "bandwidth", "bandwidthhz"});
+  if (!said) return std::nullopt;
+  const auto value = with_unit(said->values, unit);
+  const std::string lower = lower_case(unit);
+  if (!value || !(*value > 0.0) || !(lower.empty() || lower == "hz" || lower == "khz")) return std::nullopt;
+  return *value * (lower == "khz" ? 1000.0 : 1.0);
+}
+
 std::string family_of(const std::vector<HeaderLine>& lines) {
   struct Mark {
     const char* word;

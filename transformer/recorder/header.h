@@ -41,6 +41,9 @@ struct SaidRate {
 /// Returns the sampling rate given in the header; nothing if there is none.
 [[nodiscard]] std::optional<SaidRate> rate_of(const Metadata& metadata);
 
+/// Returns the corner frequency of the recorder's low-pass given in the header, Hz: "Low-pass filter: 80 Hz" and similar.
+[[nodiscard]] std::optional<double> low_pass_of(const Metadata& metadata);
+
 /// Returns the family of the recorder: "Gulf Coast Data Concepts", "MSR", …; "" if unknown.
 [[nodiscard]] std::string family_of(const std::vector<HeaderLine>& lines);
 

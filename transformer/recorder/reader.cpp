@@ -124,8 +124,9 @@ private:
   void take_line(std::string_view text) {
     text_ = text;
     ReadFacts& facts = recording_.facts;
-    if (trimmed_blanks(text).empty()) return;
+    if (trimmed_blanks(text).empty()) return note_separator();
     if (is_comment(text, layout_->shape.delimiter)) {
+      if (text.find_first_not_of("#*;-=_ \t") == std::string_view::npos) note_separator();
       facts.comments.note(line_);
       note_remark();
       return;
@@ -157,23 +158,65 @@ private:
     }
     facts.last_comment.clear();
     if (layout_->is_peaks) return take_peaks();
-    if (take_axes()) take_sample();
+    if (!take_axes()) return;
+    list_words();
+    take_sample();
   }
 
   void cut() { recording_.facts.cut_line = line_; }
 
-  void note_remark() {
+  // A blank line, or one of signs only, after a row. It separates blocks if another row follows.
+  void note_separator() {
+    if (has_previous_ && separator_line_ == 0) separator_line_ = line_;
+  }
+
+  // Without times nothing tells how much later the block after a separator begins, unless a separator follows every row or two.
+  void judge_separators() {
     ReadFacts& facts = recording_.facts;
-    facts.last_comment = shown(text_.substr(0, 80)); // last comment of the file if no row follows
+    const bool has_times = layout_->time.kind != TimeKind::none || uses_index_;
+    if (has_times || separators_.count == 0 || 2 * separators_.count >= facts.rows) return;
+    if (facts.block_gaps.count == 0) facts.block_gaps.line = separators_.line;
+    facts.block_gaps.count += separators_.count;
+    facts.longest_block_gap = std::numeric_limits<double>::infinity();
+  }
+
+  void note_remark() {
+    recording_.facts.last_comment = shown(text_.substr(0, 80)); // last comment of the file if no row follows
+    list_remark(recording_.facts.last_comment);
+  }
+
+  void list_remark(const std::string& text) {
+    ReadFacts& facts = recording_.facts;
     const std::size_t rows = facts.rows + (waiting_ ? 1 : 0);
     const auto is_known = [&](Remark& each) {
-      if (each.text != facts.last_comment) return false;
+      if (each.text != text) return false;
       each.rows = rows; // a comment at the end of the file counts as its end
       return true;
     };
     if (std::any_of(facts.remarks.begin(), facts.remarks.end(), is_known)) return;
     if (facts.remarks.size() >= ReadFacts::k_most_listed) facts.remarks.pop_back();
-    facts.remarks.push_back({line_, rows, facts.last_comment});
+    facts.remarks.push_back({line_, rows, text});
+  }
+
+  // Lists words in a column without measured values, such as a status, that differ from those of the first row.
+  void list_words() {
+    const bool is_first = first_words_.empty();
+    if (is_first) first_words_.resize(layout_->shape.width);
+    for (std::size_t i = 0; i < fields_.size(); ++i) {
+      const std::string_view field = fields_[i];
+      if (begins_like_number(field) || is_missing(field) || is_measured(i)) continue;
+      if (is_first) first_words_[i] = field;
+      else if (first_words_[i] != field) list_remark(shown(field.substr(0, 80)));
+    }
+  }
+
+  // Returns true for the columns of times, of numbers of samples and of axes.
+  bool is_measured(std::size_t column) const {
+    const TimeBase& time = layout_->time;
+    const bool is_time =
+        time.kind != TimeKind::none && (column == time.column || (time.kind == TimeKind::date_and_clock && column == time.clock_column));
+    return is_time || time.index_column == column ||
+           std::any_of(layout_->axes.begin(), layout_->axes.end(), [&](const AxisColumn& axis) { return axis.column == column; });
   }
 
   std::size_t decimals(std::string_view field) const {
@@ -293,15 +336,8 @@ private:
 
   // Returns true if another sensor has a value in this row; such a row contains no acceleration.
   bool has_other_value() const {
-    const TimeBase& time = layout_->time;
-    for (std::size_t i = 0; i < fields_.size(); ++i) {
-      const bool is_time =
-          (time.kind != TimeKind::none && (i == time.column || (time.kind == TimeKind::date_and_clock && i == time.clock_column))) ||
-          time.index_column == i;
-      const bool is_axis =
-          std::any_of(layout_->axes.begin(), layout_->axes.end(), [&](const AxisColumn& axis) { return axis.column == i; });
-      if (!is_time && !is_axis && !is_missing(fields_[i])) return true;
-    }
+    for (std::size_t i = 0; i < fields_.size(); ++i)
+      if (!is_measured(i) && !is_missing(fields_[i])) return true;
     return false;
   }
 
@@ -376,6 +412,7 @@ private:
     take_index();
     const double t = time_of_row();
     ++rows_in_block_;
+    if (separator_line_ > 0) separators_.note(separator_line_), separator_line_ = 0;
     const std::string_view place = layout_->time.kind == TimeKind::none ? text_ : field_at(layout_->time.column, "time");
     const bool is_first = !is_in_segment_;
     if (is_new_block_ && has_previous_ && !layout_->holds) note_block_gap(t - t_);
@@ -529,6 +566,7 @@ private:
     ReadFacts& facts = recording_.facts;
     facts.lines = source_.number();
     facts.rest = options_.rest;
+    judge_separators();
     if (facts.rows == 0)
       throw RecordError(layout_->file, facts.lines, 1,
                         facts.cut_line > 0 || facts.is_unended_left_out
@@ -553,6 +591,9 @@ private:
   std::size_t row_fields_ = 0, row_decimals_ = 0; ///< of the previous row: number of fields, and decimals of the last field
   bool is_fixed_ = true;                          ///< true while the last numbers of all rows have equally many decimals
   double step_ = 0.0;                             ///< s
+  std::vector<std::string> first_words_;          ///< of the first row, per column
+  Counted separators_;                            ///< blank lines, or lines of signs only, between rows
+  std::size_t separator_line_ = 0;                ///< of the last one without a row after it; 0: none
   struct Row {
     double t = 0.0;
     std::array<double, 3> a{};

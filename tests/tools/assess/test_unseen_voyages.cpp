@@ -141,7 +141,9 @@ const char* const k_damages[] = {"its end is missing",
                                  "a low filter",
                                  "low rate",
                                  "cut within a shock",
-                                 "an axis is not read"};
+                                 "an axis is not read",
+                                 "an axis toggles",
+                                 "all stand still"};
 constexpr std::size_t k_ways = std::size(k_damages);
 
 const Part& strongest(const SampledRecord& made) {
@@ -193,7 +195,14 @@ std::string damaged(std::size_t way, SampledRecord made, Draw& draw, AssessmentO
     rows.resize(rows.size() / 12);
     break;
   case 12: rows.erase(at(part.from + 0.3 * part.length), rows.end()); break;
-  default: options.reading.read.x = "2", options.reading.read.z = "4"; break;
+  case 13: options.reading.read.x = "2", options.reading.read.z = "4"; break;
+  case 14:
+    for (auto row = at(part.from - 0.1); row != rows.end(); ++row) row->a[0] = draw.happens(0.5) ? 0.004 : 0.0;
+    break;
+  default: {
+    const std::array<double, 3> last = at(part.from - 0.05)->a;
+    for (auto row = at(part.from - 0.05); row != at(part.from + part.length + 0.05); ++row) row->a = last;
+  }
   }
   return csv_of(rows);
 }
