@@ -80,8 +80,11 @@ void print_load_cases(std::ostream& out, const LoadCaseResults& results) {
   std::string verdict = name_of(results.verdict());
   std::transform(verdict.begin(), verdict.end(), verdict.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   out << wrapped(verdict + "  " + shown(results.reason()), k_columns, verdict.size() + 2, 4) << "\n";
-  const std::string& title = results.model->model.header.title;
-  out << cut(shown(results.model->name + (title.empty() ? "" : ": " + title)), k_columns) << "\n\n";
+  for (const auto& model : results.models) {
+    const std::string& title = model->model.header.title;
+    out << cut(shown(model->name + (title.empty() ? "" : ": " + title)), k_columns) << "\n";
+  }
+  out << "\n";
   print_cases(out, results.cases);
   const std::vector<LimitRow> rows = limit_rows(results);
   print_limits(out, rows);
