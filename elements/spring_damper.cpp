@@ -1,5 +1,6 @@
 #include "elements/spring_damper.h"
 
+#include "elements/space_distance.h"
 #include "elements/spring_laws.h"
 #include "mbd/system/measured_channel.h"
 #include "mbd/system/system.h"
@@ -21,7 +22,8 @@ bool check(const SpringDamper& e, SystemBuilder& builder, const std::string& fre
     if (is_wrong) builder.error(message);
     return is_wrong;
   };
-  bool is_bad = fails(e.preload && e.free_length, "give either 'preload' or " + free + ", not both");
+  bool is_bad = refuses_across(builder, e.axis.has_value(), e.across);
+  is_bad |= fails(e.preload && e.free_length, "give either 'preload' or " + free + ", not both");
   is_bad |= fails(e.preload && *e.preload != 0.0 && e.stiffness == 0.0, "'preload' needs a 'stiffness'");
   is_bad |= fails(!e.force_table.empty() && e.stiffness != 0.0, "give either 'stiffness' or " + table + ", not both");
   is_bad |= fails(!e.damping_table.empty() && e.damping != 0.0, "give either 'damping' or 'damping_table', not both");
@@ -39,6 +41,13 @@ bool check(const SpringDamper& e, SystemBuilder& builder, const std::string& fre
   return !is_bad;
 }
 
+// Value of a channel that is a measure less `zero`, or its rate. A distance in space is no row, so no formula of a force may use it.
+template <class Measure>
+auto measured_value(std::function<double(const Snapshot&)> shown, int a, int b, const Measure& measure, double zero, bool is_rate) {
+  if constexpr (requires { row_of(a, b, measure); }) return MeasuredValue{std::move(shown), row_of(a, b, measure), zero, is_rate};
+  else return shown;
+}
+
 template <class Measure, class Law> void add(SystemBuilder& builder, int a, int b, const Measure& measure, const Law& law) {
   using Group = LawGroup<Measure, Law>;
   Group& group = builder.group<Group>();
@@ -46,24 +55,23 @@ template <class Measure, class Law> void add(SystemBuilder& builder, int a, int 
   if constexpr (Law::k_event_count > 0) builder.add_unit(group, Law::k_event_count);
   const int i = static_cast<int>(group.entries.size()) - 1;
   const bool is_angle = std::is_same_v<Measure, AngleMeasure>;
-  const RowSpec row = row_of(a, b, measure);
   builder.add_channel(
       "elongation", is_angle ? "rad" : "m", {"its length or angle less the free one", "positive: stretched"},
-      MeasuredValue{[&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.free; }, row,
-                    law.free});
-  builder.add_channel("rate", is_angle ? "rad/s" : "m/s", {"of the elongation", "positive: it grows"},
-                      MeasuredValue{[&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; }, row, 0.0, true});
+      measured_value([&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.free; }, a, b,
+                     measure, law.free, false));
+  builder.add_channel(
+      "rate", is_angle ? "rad/s" : "m/s", {"of the elongation", "positive: it grows"},
+      measured_value([&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; }, a, b, measure, 0.0, true));
   builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N",
                       {"what it acts with on a along its axis, away from b", "negative: it pulls a towards b"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
 }
 
-template <class Measure>
-void add_with_law(const SpringDamper& e, SystemBuilder& builder, int a, int b, const Measure& measure, double default_free) {
+template <class Measure> void add_with_law(const SpringDamper& e, SystemBuilder& builder, int a, int b, const Measure& measure) {
   const double n = static_cast<double>(e.count);
   const double k = n * e.stiffness, c = n * e.damping;
   const double now = measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
-  double free = e.free_length.value_or(default_free);
+  double free = e.free_length.value_or(now);
   if (e.preload && k > 0.0) free = now + *e.preload / k;
   if (!e.force_table.empty() || !e.damping_table.empty()) {
     auto spring = e.force_table, damper = e.damping_table;
@@ -88,15 +96,9 @@ void compile_spring_damper(const Element& element, SystemBuilder& builder) {
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
   if (e.axis) {
     if (e.axis->norm() == 0.0) return builder.error("'axis' has no direction");
-    const AxisMeasure measure{a.point, b.point, builder.direction(b, *e.axis)};
-    const double now = measure.at<false, double>(builder.reference(a.body), builder.reference(b.body)).value;
-    return add_with_law(e, builder, a.body, b.body, measure, now);
+    return add_with_law(e, builder, a.body, b.body, AxisMeasure{a.point, b.point, builder.direction(b, *e.axis)});
   }
-  const double length = (builder.marker_position(a) - builder.marker_position(b)).norm();
-  if (length < 1e-12)
-    return builder.error("its ends coincide, so its direction is undefined: move a marker, or give an "
-                         "'axis'");
-  add_with_law(e, builder, a.body, b.body, DistanceMeasure{a.point, b.point}, length);
+  with_distance(builder, a, b, e.across, [&](const auto& measure) { add_with_law(e, builder, a.body, b.body, measure); });
 }
 
 void compile_rotational(const Element& element, SystemBuilder& builder) {
@@ -113,8 +115,7 @@ void compile_rotational(const Element& element, SystemBuilder& builder) {
   same.count = e.count;
   if (!check(same, builder, "'free_angle'", "'couple_table'")) return;
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
-  const double now = builder.reference(a.body).theta - builder.reference(b.body).theta;
-  add_with_law(same, builder, a.body, b.body, AngleMeasure{}, now);
+  add_with_law(same, builder, a.body, b.body, AngleMeasure{});
 }
 
 } // namespace
@@ -130,6 +131,7 @@ const ElementKind& spring_damper_kind() {
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker on the first body");
     f.add("b", &T::b).as(FieldType::marker).doc("marker on the second body");
     f.add("axis", &T::axis).doc("direction in marker b's axes; without it, from point to point");
+    f.add("across", &T::across).in("m").not_negative().doc("distance of its ends across the plane; its length is that in space");
     f.add("stiffness", &T::stiffness).in("N/m").not_negative().doc("k of one element");
     f.add("damping", &T::damping).in("N s/m").not_negative().doc("c of one element");
     f.add("count", &T::count).at_least(1).doc("equal elements side by side");

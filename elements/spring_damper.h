@@ -1,8 +1,8 @@
 // Spring-damper between two markers, along an axis fixed in body b or from point to point.
 //
 // Elongation δ = measure − free length. The force f = −k δ − c δ̇ acts on a along the gradient of the measure (away from b if positive),
-// its opposite on b. Stored energy U = kδ²/2, dissipated power cδ̇². Optional: a dead band (gap) and tabulated characteristics, whose kinks
-// are events. Source: theory.md §2, Eqs. (2), (4).
+// its opposite on b. Stored energy U = kδ²/2, dissipated power cδ̇². Optional: a dead band (gap), tabulated characteristics, whose kinks are
+// events, and ends that are apart out of the plane (space_distance.h). Source: theory.md §2, Eqs. (2), (4).
 #pragma once
 
 #include "mbd/model/model.h"
@@ -12,6 +12,7 @@ namespace steplap {
 struct SpringDamper : Element {
   std::string a, b = "ground";
   std::optional<Vec2> axis; ///< in marker b's axes; not given: point to point
+  double across = 0.0;      ///< distance of its ends across the plane, m
   double stiffness = 0.0, damping = 0.0;
   std::optional<double> free_length; ///< value of the measure at zero force, m
   std::optional<double> preload;     ///< f in the reference pose, N

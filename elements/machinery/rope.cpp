@@ -1,7 +1,7 @@
 #include "elements/machinery/rope.h"
 
 #include "elements/contact_laws.h"
-#include "elements/machinery/space_distance.h"
+#include "elements/space_distance.h"
 #include "mbd/base/dual.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/model/method.h"

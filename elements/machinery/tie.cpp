@@ -1,7 +1,7 @@
 #include "elements/machinery/tie.h"
 
 #include "elements/contact_laws.h"
-#include "elements/machinery/space_distance.h"
+#include "elements/space_distance.h"
 #include "mbd/system/system.h"
 #include "mbd/system/turn_table.h"
 #include "mbd/trust/element_judgement.h"
@@ -227,7 +227,7 @@ bool check(const Tie& e, SystemBuilder& builder) {
                   "a negative 'preload' presses: 'acts' has to be \"compression\" or \"both\"");
   is_bad |= fails(e.preload.value_or(0.0) > 0.0 && e.acts == "compression",
                   "a positive 'preload' pulls: 'acts' has to be \"tension\" or \"both\"");
-  is_bad |= fails(e.axis && e.across > 0.0, "'across' is the offset of two points, and 'axis' fixes the direction: give one of them");
+  is_bad |= refuses_across(builder, e.axis.has_value(), e.across);
   is_bad |= fails(e.on_break == "stop" && !e.strength, "'on_break' needs a 'strength'");
   return !is_bad;
 }
@@ -241,11 +241,7 @@ void compile_tie(const Element& element, SystemBuilder& builder) {
     if (e.axis->norm() == 0.0) return builder.error("'axis' has no direction");
     return add(e, builder, a.body, b.body, AxisMeasure{a.point, b.point, builder.direction(b, *e.axis)});
   }
-  if ((builder.marker_position(a) - builder.marker_position(b)).norm() < 1e-12)
-    return builder.error("its ends coincide, so its direction is undefined: move a marker, or give an 'axis'");
-  const DistanceMeasure in_plane{a.point, b.point};
-  if (e.across > 0.0) add(e, builder, a.body, b.body, SpaceDistance{in_plane, e.across});
-  else add(e, builder, a.body, b.body, in_plane);
+  with_distance(builder, a, b, e.across, [&](const auto& measure) { add(e, builder, a.body, b.body, measure); });
 }
 
 // Judges a tie with a strength: it must not break.

@@ -42,7 +42,9 @@ const TableKind& case_kind() {
     f.add("pull", &T::pull)
         .in("m/s^2")
         .doc("[x, y], added to gravity from the start: minus the constant acceleration of the vehicle; braking pulls forward");
-    f.add("plane", &T::plane).one_of({"", "lengthwise", "transverse"}).doc("section of the machine that the model shows, for reports");
+    f.add("plane", &T::plane)
+        .one_of({"", "lengthwise", "transverse"})
+        .doc("section of the machine that the model shows; cases of one name in models of both sections act at the same time");
     f.add("source", &T::source).required().doc("document that requires the load, with its edition");
     f.add("criteria", &T::criteria).doc("names of the [[acceptance]] that apply, patterns with * and ?; all if not given");
     k.holds<T>();

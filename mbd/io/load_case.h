@@ -9,7 +9,7 @@ namespace steplap {
 struct LoadCase : TableObject {
   std::vector<std::string> changes;  ///< field `set`: "path=value" as in overrides.h
   std::optional<Vec2> pull;          ///< m/s², added to gravity: minus the constant acceleration of the vehicle
-  std::string plane;                 ///< "lengthwise", "transverse" or "" (not stated); for reports only
+  std::string plane;                 ///< "lengthwise", "transverse" or "" (not stated): section that the model shows
   std::string source;                ///< document that requires the load, with its edition
   std::vector<std::string> criteria; ///< patterns of the names of [[acceptance]] that apply; empty: all
 

@@ -74,9 +74,18 @@ std::vector<CaseLimit> limits_of(const Report& report, const std::vector<Utilisa
   return limits;
 }
 
-void run_case(const SharedModel& loaded, const RunOptions& options, CaseResult& result) {
+SharedModel with_samples(const SharedModel& loaded, const CaseReading& reading) {
+  if (!reading.take) return loaded;
+  auto sampled = std::make_shared<LoadedModel>(*loaded);
+  sampled->model.output.channels = reading.channels;
+  sampled->model.output.step = reading.step;
+  return sampled;
+}
+
+void run_case(const SharedModel& loaded, const RunOptions& options, const CaseReading& reading, std::size_t index, CaseResult& result) {
   try {
-    const Report report = judged_run(loaded, options);
+    const Report report = judged_run(with_samples(loaded, reading), options);
+    if (reading.take) reading.take(index, report);
     const Overview overview = overview_of(report);
     result.judgement = report.judgement;
     result.reason = overview.reason;
@@ -135,10 +144,10 @@ std::string LoadCaseResults::reason() const {
 }
 
 LoadCaseResults run_load_cases(const std::string& path, const std::vector<std::string>& overrides, const RunCatalogue& catalogue,
-                               const RunOptions& options) {
+                               const RunOptions& options, const CaseReading& reading) {
   const std::string text = read_input(path, {}); // once, so that all cases are of the same file
-  LoadCaseResults results{load_model_text(text, shown_input(path), overrides, catalogue), {}};
-  const Model& model = results.model->model;
+  LoadCaseResults results{{load_model_text(text, shown_input(path), overrides, catalogue)}, {}};
+  const Model& model = results.models.front()->model;
   const std::vector<LoadCase> cases = load_cases_of(model);
   if (cases.empty()) throw ModelError(model.header.where, "the model has no load cases: give each as [[case]]");
   std::vector<SharedModel> loaded;
@@ -146,11 +155,11 @@ LoadCaseResults run_load_cases(const std::string& path, const std::vector<std::s
   for (const LoadCase& one : cases) {
     std::vector<std::string> all = overrides;
     for (const std::string& own : one.overrides(model.header.gravity)) all.push_back(own);
-    loaded.push_back(load_case(one, text, results.model->path, all, catalogue, problems));
+    loaded.push_back(load_case(one, text, results.models.front()->path, all, catalogue, problems));
     results.cases.push_back({one, std::move(all), {}, "", "", {}});
   }
   if (!problems.empty()) throw ModelError(std::move(problems));
-  for_each_in_parallel(cases.size(), [&](std::size_t i) { run_case(loaded[i], options, results.cases[i]); });
+  for_each_in_parallel(cases.size(), [&](std::size_t i) { run_case(loaded[i], options, reading, i, results.cases[i]); });
   return results;
 }
 

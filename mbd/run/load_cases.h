@@ -8,6 +8,7 @@
 #include "mbd/io/load_case.h"
 #include "mbd/run/overview.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,8 +39,8 @@ struct CaseResult {
 
 /// Results of all cases.
 struct LoadCaseResults {
-  std::shared_ptr<const LoadedModel> model; ///< the model without any case
-  std::vector<CaseResult> cases;            ///< at least one
+  std::vector<std::shared_ptr<const LoadedModel>> models; ///< without any case; one for each plane, at least one
+  std::vector<CaseResult> cases;                          ///< at least one
 
   /// Returns the worst verdict of all cases.
   [[nodiscard]] Verdict verdict() const;
@@ -62,10 +63,17 @@ void check_case_criteria(const LoadCase& one, const Model& model, std::vector<Di
 /// Removes the criteria of a completed model that do not apply to the case.
 void keep_case_criteria(const LoadCase& one, Model& model);
 
+/// Samples that are read from the run of every case.
+struct CaseReading {
+  std::vector<std::string> channels;                         ///< names
+  double step = 0.0;                                         ///< s
+  std::function<void(std::size_t, const Report&)> take = {}; ///< called with the index of each case that began, in any thread; may be empty
+};
+
 /// Runs all cases in parallel. `overrides` apply to every case, before its own. Throws ModelError with the location of the [[case]] if a
 /// case sets what does not exist, names no criterion of the model or has none at all, and if the model has no case.
 [[nodiscard]] LoadCaseResults run_load_cases(const std::string& path, const std::vector<std::string>& overrides,
-                                             const RunCatalogue& catalogue, const RunOptions& options);
+                                             const RunCatalogue& catalogue, const RunOptions& options, const CaseReading& reading = {});
 /// Returns the matrix of limits by cases. Its pointers lead into `results`.
 [[nodiscard]] std::vector<LimitRow> limit_rows(const LoadCaseResults& results);
 

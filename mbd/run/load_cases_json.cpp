@@ -40,11 +40,12 @@ OrderedJson case_json(const CaseResult& one) {
 } // namespace
 
 OrderedJson load_cases_document(const LoadCaseResults& results) {
-  OrderedJson json{{"model", model_json(*results.model)},
+  OrderedJson json{{"model", model_json(*results.models.front())},
                    {"verdict", name_of(results.verdict())},
                    {"reason", results.reason()},
                    {"cases", OrderedJson::array()},
                    {"limits", OrderedJson::array()}};
+  for (std::size_t i = 1; i < results.models.size(); ++i) json["other_planes"].push_back(model_json(*results.models[i]));
   for (const CaseResult& one : results.cases) json["cases"].push_back(case_json(one));
   for (const LimitRow& row : limit_rows(results))
     json["limits"].push_back({{"limit", row.name}, {"governing_case", results.cases[row.governing].load.name}});

@@ -14,7 +14,7 @@ LONGEST = 26  # lines of a recipe's model that are shown
 
 
 def tables(text):
-    return [re.sub(r"\s+#.*", "", table).split() for table in re.split(r"(?m)^(?=\[\[)", text)]
+    return [re.sub(r"\s+#.*", "", table).split() for table in re.split(r"(?m)^(?=\[[\[a-z])", text)]
 
 
 def faults_of(page, root, listed):

@@ -63,6 +63,7 @@ inline std::vector<ConformanceScene> spring_scenes() {
        false, true},
       {"spring_damper", "a = \"A\"\nb = \"B\"\naxis = [@+0.6, 0.8]\nstiffness = 800.0\ndamping = 30.0\npreload = 20.0\n"},
       {"spring_damper", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\ngap = 0.06\n", false, true},
+      {"spring_damper", "a = \"A\"\nb = \"B\"\nacross = 0.7\nstiffness = 800.0\ndamping = 30.0\npreload = -20.0\ncount = 2\n", false, true},
       {"spring_damper",
        "a = \"A\"\nb = \"B\"\nforce_table = [[-0.1, -90.0], [-0.02, -10.0], [0.03, 20.0], [0.1, 120.0]]\n"
        "damping_table = [[-1.0, -40.0], [0.0, 0.0], [1.0, 15.0]]\ncount = 2\n",

@@ -79,6 +79,30 @@ preload = -29.43
   }
 }
 
+// A mass on a vertical line between two springs that lead to both sides of the plane: with L = √(y² + c²) each stores ½ k (L − L₀)².
+TEST_CASE("springs that leave the plane keep the energy of springs in space, pull and push") {
+  const double m = 2.0, k = 300.0, c = 0.6, free = 0.9, y_0 = -0.9;
+  const auto text = [](const std::string& more) {
+    return std::string("gravity = [0.0, 0.0]\n") + "[[body]]\nname = \"mass\"\nmass = 2.0\ninertia = 1.0\nposition = [0.0, -0.9]\n" +
+           "[[element]]\nkind = \"spring_damper\"\nname = \"pair\"\na = \"mass\"\nstiffness = 300.0\nacross = 0.6\ncount = 2\n" + more;
+  };
+  const auto energy = [&](double y) { return k * std::pow(std::hypot(y, c) - free, 2); };
+  const Run r = run(text("free_length = 0.9\n"), {"dop853", 1e-12, 2.0, 0.05});
+  const std::vector<double> y = r.series("mass.y"), v = r.series("mass.vy"), force = r.series("pair.force");
+  bool pulls = false, pushes = false;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    CHECK(std::abs(0.5 * m * v[i] * v[i] + energy(y[i]) - energy(y_0)) < 1e-9 * energy(y_0)); // 2 s, tolerance 1e-12 a step
+    CHECK(std::abs(force[i] + 2.0 * k * (std::hypot(y[i], c) - free)) < 1e-9 * k);            // of both, along them
+    pulls |= force[i] < -1.0;
+    pushes |= force[i] > 1.0;
+  }
+  CHECK(pulls);
+  CHECK(pushes);
+  // Without a free length they are at rest as they are drawn, which is a length in space.
+  CHECK(run(text(""), {"dop853", 1e-12, 0.1}).last("mass.vy") == 0.0);
+  CHECK_THROWS_AS((void)run(text("axis = [0.0, 1.0]\n"), {}), ModelError);
+}
+
 TEST_CASE("a rotational spring-damper turns a body as the closed form says") {
   const char* text = R"(
 gravity = [0.0, 0.0]

@@ -24,10 +24,10 @@ std::string sheet_page(const std::string& title, const OrderedJson& data) {
 
 } // namespace
 
-std::string cases_sheet(const LoadedModel& model, const OrderedJson& document) {
-  const OrderedJson data{
-      {"program", std::string("steplap ") + k_version}, {"runs", OrderedJson::array({still_run(model)})}, {"load_cases", document}};
-  return sheet_page("cases: " + model.name, data);
+std::string cases_sheet(const std::vector<std::shared_ptr<const LoadedModel>>& models, const OrderedJson& document) {
+  OrderedJson data{{"program", std::string("steplap ") + k_version}, {"runs", OrderedJson::array()}, {"load_cases", document}};
+  for (const auto& model : models) data["runs"].push_back(still_run(*model));
+  return sheet_page("cases: " + models.front()->name, data);
 }
 
 std::string run_sheet(Results run) {

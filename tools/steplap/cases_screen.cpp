@@ -15,7 +15,7 @@ namespace {
 
 using Align = TextTable::Align;
 
-constexpr std::size_t k_columns = 80, k_name = 25, k_quantity = 12; // characters; the tables then fit into 80 columns
+constexpr std::size_t k_columns = 80, k_name = 25, k_quantity = 12; // characters
 constexpr std::size_t k_cases_in_row = 6;                           // of the matrix; more cases are printed in further tables
 
 std::string name_text(const std::string& name) { return cut(shown(name), k_name); }
@@ -46,15 +46,28 @@ void print_cases(std::ostream& out, const std::vector<CaseResult>& cases) {
       out << wrapped("  " + std::to_string(k + 1) + ": " + shown(cases[k].reason), k_columns, 5, 4) << "\n";
 }
 
-void print_limits(std::ostream& out, const std::vector<LimitRow>& rows) {
-  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right});
-  table.add_row({"limit", "case", "value", "at limit", "margin", "error"});
-  for (const LimitRow& row : rows) {
-    const CriterionResult& worst = row.in_case[row.governing]->result;
-    table.add_row({name_text(row.name), std::to_string(row.governing + 1), cell_text(worst.value, worst.unit),
-                   cell_text(worst.limit, worst.unit), cell_text(worst.reserve, worst.unit),
-                   cell_text(worst.error, worst.unit, {.most = 1})});
+// Cuts the names in the first column so that the table fits on the screen. Numbers keep their digits and units.
+void cut_names(std::vector<TextTable::Row>& rows) {
+  std::size_t others = 2; // the indent
+  for (std::size_t i = 1; i < rows.front().size(); ++i) {
+    std::size_t widest = 0;
+    for (const TextTable::Row& row : rows) widest = std::max(widest, width_of(row[i].text));
+    others += 2 + widest;
   }
+  for (TextTable::Row& row : rows) row.front().text = cut(row.front().text, k_columns - others);
+}
+
+void print_limits(std::ostream& out, const std::vector<LimitRow>& limits) {
+  std::vector<TextTable::Row> rows{{"limit", "case", "value", "at limit", "margin", "error"}};
+  for (const LimitRow& limit : limits) {
+    const CriterionResult& worst = limit.in_case[limit.governing]->result;
+    rows.push_back({name_text(limit.name), std::to_string(limit.governing + 1), cell_text(worst.value, worst.unit),
+                    cell_text(worst.limit, worst.unit), cell_text(worst.reserve, worst.unit),
+                    cell_text(worst.error, worst.unit, {.most = 1})});
+  }
+  cut_names(rows);
+  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right});
+  for (TextTable::Row& row : rows) table.add_row(std::move(row));
   out << "\n" << table;
 }
 
@@ -80,8 +93,11 @@ void print_load_cases(std::ostream& out, const LoadCaseResults& results) {
   std::string verdict = name_of(results.verdict());
   std::transform(verdict.begin(), verdict.end(), verdict.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   out << wrapped(verdict + "  " + shown(results.reason()), k_columns, verdict.size() + 2, 4) << "\n";
-  const std::string& title = results.model->model.header.title;
-  out << cut(shown(results.model->name + (title.empty() ? "" : ": " + title)), k_columns) << "\n\n";
+  for (const auto& model : results.models) {
+    const std::string& title = model->model.header.title;
+    out << cut(shown(model->name + (title.empty() ? "" : ": " + title)), k_columns) << "\n";
+  }
+  out << "\n";
   print_cases(out, results.cases);
   const std::vector<LimitRow> rows = limit_rows(results);
   print_limits(out, rows);

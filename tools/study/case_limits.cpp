@@ -63,22 +63,78 @@ void refuse_without_limits(const StudyModel& model, std::vector<Diagnostic>& pro
   problems.push_back({where, "model '" + model.name + "' has no limits: add an [[acceptance]], or give the study a [[limit_state]]"});
 }
 
-void add_limits_of(const StudyModel& model, Study& study) {
-  LimitState limit;
-  limit.name = identifier_of(model.name, study);
-  limit.where = model.load ? model.load->where : Location{model.path, 1, 1};
+Response reserve_of(const StudyModel& model, const Study& study) {
   Response reserve;
-  reserve.name = "reserve_" + limit.name;
+  reserve.name = "reserve_" + identifier_of(model.name, study);
   reserve.model = model.name;
   reserve.what = "reserve";
   reserve.measure = Measure::reserve;
-  reserve.where = limit.where;
+  reserve.where = model.load ? model.load->where : Location{model.path, 1, 1};
+  return reserve;
+}
+
+void add_limits_of(const StudyModel& model, Study& study) {
+  LimitState limit;
+  Response reserve = reserve_of(model, study);
+  limit.name = identifier_of(model.name, study);
+  limit.where = reserve.where;
   limit.expression = reserve.name;
   study.responses.push_back(std::move(reserve));
   study.limit_states.push_back(std::move(limit));
 }
 
+void refuse_equal_names(const std::vector<SharedStudyModel>& models, const Study& study, std::vector<Diagnostic>& problems) {
+  for (std::size_t i = 0; i < models.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (models[i]->name == models[j]->name)
+        problems.push_back({models[i]->load ? models[i]->load->where : study.where,
+                            "two load cases are called '" + models[i]->name + "': their results could not be told apart"});
+}
+
+// Adds the responses of all load cases of the model, and their models. Returns the least of them as a formula.
+std::string add_reserves_of(const StudyModel& model, LoadedStudy& loaded, std::vector<Response>& responses, const Location& where,
+                            std::vector<Diagnostic>& problems) {
+  const std::vector<LoadCase> cases = load_cases_of(model.given);
+  if (cases.empty()) problems.push_back({where, "model '" + model.name + "' has no load cases: give each as [[case]]"});
+  std::string names;
+  for (const LoadCase& one : cases)
+    if (SharedStudyModel made = case_model(model, one, loaded.study, problems)) {
+      responses.push_back(reserve_of(*made, loaded.study));
+      names += (names.empty() ? "" : ", ") + responses.back().name;
+      loaded.models.push_back(std::move(made));
+    }
+  return "min(" + names + ")";
+}
+
+bool is_needed(const StudyModel& model, const Study& study) {
+  const auto is_of_it = [&](const auto& one) { return one.model == model.name; };
+  return model.load || std::any_of(study.responses.begin(), study.responses.end(), is_of_it) ||
+         std::any_of(study.histories.begin(), study.histories.end(), is_of_it);
+}
+
 } // namespace
+
+void add_reserves_of_cases(LoadedStudy& loaded) {
+  Study& study = loaded.study;
+  const std::vector<SharedStudyModel> models = loaded.models;
+  const auto is_of_cases = [](const Response& r) { return r.what == k_reserve_of_cases; };
+  if (std::none_of(study.responses.begin(), study.responses.end(), is_of_cases)) return;
+  std::vector<Diagnostic> problems;
+  std::vector<Response> responses;
+  for (Response& r : study.responses) {
+    const auto model = std::find_if(models.begin(), models.end(), [&](const SharedStudyModel& m) { return m->name == r.model; });
+    if (is_of_cases(r) && model != models.end()) {
+      r.expression = add_reserves_of(**model, loaded, responses, r.where, problems);
+      r.measure = Measure::expression;
+      r.model.clear();
+    }
+    responses.push_back(std::move(r));
+  }
+  refuse_equal_names(loaded.models, study, problems);
+  if (!problems.empty()) throw ModelError(std::move(problems));
+  study.responses = std::move(responses);
+  std::erase_if(loaded.models, [&](const SharedStudyModel& model) { return !is_needed(*model, study); });
+}
 
 void add_limits_of_cases(LoadedStudy& loaded) {
   std::vector<Diagnostic> problems;
@@ -91,11 +147,7 @@ void add_limits_of_cases(LoadedStudy& loaded) {
     models.push_back(model);
     refuse_without_limits(*model, problems);
   }
-  for (std::size_t i = 0; i < models.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (models[i]->name == models[j]->name)
-        problems.push_back({models[i]->load ? models[i]->load->where : loaded.study.where,
-                            "two load cases are called '" + models[i]->name + "': their results could not be distinguished"});
+  refuse_equal_names(models, loaded.study, problems);
   if (!problems.empty()) throw ModelError(std::move(problems));
   loaded.models = std::move(models);
   for (const SharedStudyModel& model : loaded.models) add_limits_of(*model, loaded.study);

@@ -72,11 +72,13 @@ FieldTable response_fields() {
   t.add("channel", &Response::channel).doc("channel of the run, a pattern with * and ?: the outermost of all that match");
   t.add("what", &Response::what)
       .one_of({"highest", "lowest", "largest", "time_of_highest", "time_of_lowest", "time_of_largest", "final", "initial", "mean", "path",
-               "count", "time_of_first", "verdict", "reserve"})
+               "count", "time_of_first", "verdict", "reserve", "reserve_of_cases"})
       .doc("extremes are located, largest is of the absolute value; mean and path (sum of all ways) are of the samples "
            "every output.step; count and "
            "time_of_first are of events; verdict: 0 hold, 1 open, 2 inspect, 3 reject; reserve: 0.2 where 20 % of the limit that is used "
-           "most is left, with its estimated error, negative unless the verdict is hold");
+           "most is left, with its estimated error, negative unless the verdict is hold; reserve_of_cases: the least of all load cases of "
+           "the "
+           "model ([[case]])");
   t.add("event", &Response::event).doc("pattern of events, as events.csv writes them, for count and time_of_first");
   t.add("element", &Response::element).doc("pattern of the elements whose events count; all if not given");
   t.add("otherwise", &Response::otherwise).in("s").doc("the time of an event that never happens; infinite if not given");

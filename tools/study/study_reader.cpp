@@ -12,6 +12,7 @@
 #include "mbd/model/completion.h"
 #include "mbd/model/model_path.h"
 #include "mbd/model/validate.h"
+#include "tools/study/case_limits.h"
 #include "tools/study/expression.h"
 #include "tools/study/history.h"
 #include "tools/study/kinds.h"
@@ -79,6 +80,7 @@ public:
     for (const StudyKind& kind : study_kinds()) read_settings(kind);
     stop_if_wrong();
     loaded_.models.assign(models_.begin(), models_.end());
+    add_reserves_of_cases(loaded_);
     if (kind_->prepare) kind_->prepare(loaded_);
     const std::size_t known = problems_.size();
     check_names();
@@ -286,7 +288,8 @@ private:
                                                           {"time_of_lowest", {Measure::lowest, true}},
                                                           {"time_of_largest", {Measure::largest_magnitude, true}},
                                                           {"verdict", {Measure::verdict}},
-                                                          {"reserve", {Measure::reserve}}};
+                                                          {"reserve", {Measure::reserve}},
+                                                          {k_reserve_of_cases, {Measure::reserve}}};
     const auto found = measures.find(r.what);
     if (found == measures.end()) return;
     r.measure = found->second.measure;

@@ -97,3 +97,60 @@ reason = "a spring that is let go moves by twice its static deflection, mg/k = 9
   REQUIRE(rows.size() == 1);
   CHECK(rows.front().outcome.numbers.at(0) == static_cast<double>(Verdict::open));
 }
+
+// A mass at rest on a spring under three vertical accelerations: the spring carries m (g − pull), and 1500 N are allowed.
+TEST_CASE("a response is the least reserve of all load cases of its model") {
+  StudyBench bench;
+  const std::string hanging = R"(
+simulation = { end = 0.1, initial = "equilibrium" }
+[[body]]
+name = "mass"
+mass = 100
+inertia = 1
+[[element]]
+name = "guide"
+kind = "prismatic"
+a = "mass"
+axis = [0, 1]
+[[element]]
+name = "spring"
+kind = "spring_damper"
+a = "mass"
+axis = [0, 1]
+stiffness = "1 MN/m"
+[[acceptance]]
+name = "force"
+channel = "spring.force"
+within = 1500
+)";
+  const std::string cases =
+      "[[case]]\nname = \"rest\"\nsource = \"a test\"\n[[case]]\nname = \"heave up\"\nsource = \"a test\"\npull = [0, "
+      "4.905]\n[[case]]\nname = \"heave down\"\nsource = \"a test\"\npull = [0, -9.81]\n";
+  const std::string study =
+      "kind = \"sweep\"\nmodel = \"hanging.toml\"\n[[variable]]\nname = \"m\"\npath = \"body.mass.mass\"\nvalues = [50, "
+      "70, 100]\n[[response]]\nname = \"left\"\nwhat = \"reserve_of_cases\"\n";
+  bench.write("hanging.toml", hanging + cases);
+  const Outcome outcome = bench.run(study);
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.code == 0);
+  study::Store store(bench.at("study.sqlite"));
+  std::vector<study::StoredSample> rows;
+  store.read(1, 3, rows);
+  REQUIRE(rows.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double m = std::array{50.0, 70.0, 100.0}[i];
+    const std::vector<double>& numbers = rows[i].outcome.numbers; // of each case, and the least
+    REQUIRE(numbers.size() == 4);
+    const double pulls[] = {0.0, 4.905, -9.81};
+    // The search for rest leaves forces of 1e-9 of the weight; the estimated error is subtracted.
+    for (std::size_t k = 0; k < 3; ++k) CHECK(numbers[k] == doctest::Approx(1.0 - m * (9.81 - pulls[k]) / 1500.0).epsilon(1e-6));
+    CHECK(numbers[3] == numbers[2]);
+  }
+  CHECK(rows[2].outcome.numbers[3] < 0.0); // 100 kg are too much only when heaving down
+  StudyBench other;
+  other.write("hanging.toml", hanging);
+  const Outcome without = other.run(study);
+  CHECK(without.code == 3);
+  CHECK(has(without.err, "study.toml:7:"));
+  CHECK(has(without.err, "model 'hanging' has no load cases"));
+}

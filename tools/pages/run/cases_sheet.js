@@ -27,15 +27,16 @@ steplap.casesSheet = (found) => {
   const values = (one, k) => make('p', {},
     `${k + 1}: ${one.overrides.join('; ') || 'those of the model'}${one.verdict === 'hold' ? '' : `. ${one.reason}`}`);
   const numbers = cases.map((_, k) => k + 1), last = [1, 2, 3, 4].map((k) => cases.length + k);
-  const [{ name, drawing: machine }] = steplap.data.runs;
-  const parts = [drawing(steplap.data.still(name, machine), 0),
+  const machines = steplap.data.runs.map((run) => drawing(steplap.data.still(run.name, run.drawing), 0));
+  const inputs = [model, ...(found.other_planes || [])].flatMap((plane) => plane.inputs);
+  const parts = [machines.length > 1 ? make('div', { class: 'beside' }, ...machines) : machines[0],
     part('Cases', make('div', { id: 'cases' },
       table(['no.', 'case', 'plane', 'source', 'verdict', 'governing limit', 'used'], cases.map(caseRow), [6]))),
     part('Limits: utilisation in each case', make('div', { id: 'limits' },
       table(['limit', ...numbers.map(String), 'governs', 'value', 'margin', 'error'], found.limits.map(limitRow), [...numbers, ...last]))),
     part('Values of each case', ...cases.map(values))];
   const content = { title: `Load cases: ${model.title || model.name}`,
-    about: `${model.inputs.map((file) => named(file.file, file.sha256)).join('; ')}. Made by ${steplap.data.program}.`,
+    about: `${inputs.map((file) => named(file.file, file.sha256)).join('; ')}. Made by ${steplap.data.program}.`,
     word: found.verdict.toUpperCase(), verdict: found.verdict, reason: found.reason, parts, signed: ['Prepared by', 'Approved by'] };
   return { contentOf: () => content, room: { most: { size: usual }, cuts: smaller(usual, 4.5) } };
 };

@@ -168,8 +168,9 @@ class LoadCases:
 
 
 def cases(model: Any, values: Any = None, estimate_error: bool = False) -> LoadCases:
-    """Runs all [[case]]s of a model (a Model, or the path of its file) as `steplap cases` does. Raises ModelError, NumericalFailure."""
-    with _files([model]) as paths:
+    """Runs all [[case]]s of a model (a Model, or the path of its file) as `steplap cases` does, or of two models of different planes in a
+    list. Raises ModelError, NumericalFailure."""
+    with _files(model if isinstance(model, list) else [model]) as paths:
         _, output, _ = _call(["cases", *paths, "--json", *_set(values), *_option("estimate-error", estimate_error)], (0,))
     return LoadCases(_checked(output)["results"][0]["load_cases"])
 

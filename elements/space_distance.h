@@ -8,6 +8,7 @@
 #pragma once
 
 #include "mbd/system/measure.h"
+#include "mbd/system/system.h"
 #include "mbd/system/turn_table.h"
 
 #include <cmath>
@@ -39,5 +40,23 @@ struct SpaceDistance {
 };
 
 [[nodiscard]] inline Turning turning_of(const SpaceDistance& m) { return turning_of(m.plane); }
+
+/// Reports an error if a force acts along an axis and has an offset out of the plane, too. Returns true if it does.
+[[nodiscard]] inline bool refuses_across(SystemBuilder& builder, bool has_axis, double across) {
+  const bool is_wrong = has_axis && across > 0.0;
+  if (is_wrong) builder.error("'across' is the offset of two points, and 'axis' fixes the direction: give one of them");
+  return is_wrong;
+}
+
+/// Calls use(measure) with the distance of two markers that are `across` apart out of the plane, m: a DistanceMeasure if that is zero. Reports
+/// an error instead if they coincide in the plane.
+template <class Use>
+void with_distance(SystemBuilder& builder, const CompiledMarker& a, const CompiledMarker& b, double across, Use&& use) {
+  if ((builder.marker_position(a) - builder.marker_position(b)).norm() < 1e-12)
+    return builder.error("its ends coincide, so its direction is undefined: move a marker, or give an 'axis'");
+  const DistanceMeasure in_plane{a.point, b.point};
+  if (across > 0.0) use(SpaceDistance{in_plane, across});
+  else use(in_plane);
+}
 
 } // namespace steplap
