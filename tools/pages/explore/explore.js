@@ -159,7 +159,7 @@
     // A new place for the lanes: what listened to the old one goes with it.
     const lanes = make('div', { id: 'lanes' });
     at('lanes').replaceWith(lanes);
-    timeline = new steplap.Timeline([before, now], end, { lanes, axis: at('time-axis'), slider: at('time'), onTime: go });
+    timeline = new steplap.Timeline([before, now], end, { causes: scenes.map((scene) => scene.causes()), lanes, axis: at('time-axis'), slider: at('time'), onTime: go });
     timeline.build();
   }
 

@@ -253,7 +253,7 @@
   choices();
   steplap.bars.build(at('limits'), runs, jump);
   steplap.story.build(at('story'), runs, go);
-  const timeline = new steplap.Timeline(runs, horizon, { lanes: at('lanes'), axis: at('time-axis'), slider: at('time'), onTime: go });
+  const timeline = new steplap.Timeline(runs, horizon, { causes: scenes.map((scene) => scene.causes()), lanes: at('lanes'), axis: at('time-axis'), slider: at('time'), onTime: go });
   const view = new steplap.View(scenes, () => show(t));
   for (const [id, action] of [['closer', () => view.zoomAt(scenes[0], 1.5)], ['further', () => view.zoomAt(scenes[0], 1 / 1.5)], ['whole', () => view.reset()]]) {
     at(id).append(steplap.icon(id));

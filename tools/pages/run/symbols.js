@@ -8,6 +8,17 @@ steplap.Symbols = (() => {
   const along = (a, b, k) => add(a, scaled(minus(b, a), k));
   const arrowHead = (tip, d, size) => path([add(tip, add(scaled(d, -size), scaled(across(d), 0.45 * size))), tip, add(tip, add(scaled(d, -size), scaled(across(d), -0.45 * size)))], true);
 
+  const larger = 2; // a body that is so many times larger than a text is not hidden by it
+  const near = 60; // pixels from a place to a text that leaves small parts free
+  const mostParts = 200; // bodies: more leave texts no room
+  const isApart = ([x, y], [width, height], [qx, qy, w, h]) => Math.abs(qy - y) >= 0.5 * (h + height) || Math.abs(qx - x) >= 0.5 * (w + width);
+  // Shifts of a text of a width from its place, pixels: above, below, beside; the nearest first.
+  steplap.waysAround = (width) => {
+    const rows = Array.from({ length: 14 }, (_, k) => (k % 2 ? 1 : -1) * (16 + 18 * Math.floor(k / 2))), columns = [0, 0.6, -0.6, 1.2, -1.2].map((k) => k * width);
+    const found = [...columns.flatMap((dx) => rows.map((dy) => [dx, dy])), ...columns.slice(1).map((dx) => [dx, 0])];
+    return found.sort((a, b) => length(a) - length(b));
+  };
+
   class Symbols {
     constructor(scene) {
       this.scene = scene;
@@ -33,6 +44,7 @@ steplap.Symbols = (() => {
           const draw = Symbols.types[shape.type] || (shape.at.length ? Symbols.types.neutral : null);
           if (draw && (shape.at.length || shape.type === 'friction')) draw.call(this, element, shape);
         }
+      this.loadsWithoutElement();
     }
     get u() { return this.scene.u; }
     screen(place, pose) { return this.scene.toScreen(this.scene.placed(place, pose)); }
@@ -98,13 +110,17 @@ steplap.Symbols = (() => {
       text.setAttribute('x', x.toFixed(1));
       text.setAttribute('y', (y + 0.32 * height).toFixed(1));
     }
-    // Moves a text's middle by the first of the shifts that leaves it clear of marks and texts, and onto the picture.
-    put(text, at, [width, height], shifts) {
-      this.write(text, this.room(at, [width, height], shifts) || this.take(this.onPicture(add(at, shifts[0]), [width, height]), [width, height]));
+    // Puts a text's middle near a place, clear of marks, texts and small parts; where there is no room it is left out.
+    put(text, at, size, ways = steplap.waysAround(size[0])) {
+      const place = this.room(at, size, ways);
+      if (place) this.write(text, place);
+      else text.textContent = '';
     }
 
-    isFree([x, y], [width, height]) {
-      return this.scene.takenTexts.every(([qx, qy, w, h]) => Math.abs(qy - y) >= 0.5 * (h + height) || Math.abs(qx - x) >= 0.5 * (w + width));
+    isFree(at, size) { return this.scene.takenTexts.every((other) => isApart(at, size, other)); }
+    // A text may lie on a body that is much larger than itself.
+    isClearOfParts(at, [width, height]) {
+      return this.scene.partBoxes.every(([x, y, w, h]) => (w > larger * width && h > larger * height) || isApart(at, [width, height], [x, y, w, h]));
     }
     onPicture([x, y], [width, height]) {
       const { scene } = this, half = 0.5 * width + 2;
@@ -114,13 +130,12 @@ steplap.Symbols = (() => {
       this.scene.takenTexts.push([...at, ...size]);
       return { at, size };
     }
-    // Takes the first place on the picture, by the shifts, that is clear of marks and texts; null if there is none.
+    // Takes the first place on the picture, by the shifts, that is clear of marks and texts, and if there is one of small parts as well; null
+    // if there is none.
     room(at, size, shifts) {
-      for (const shift of shifts) {
-        const place = this.onPicture(add(at, shift), size);
-        if (this.isFree(place, size)) return this.take(place, size);
-      }
-      return null;
+      const free = shifts.map((shift) => this.onPicture(add(at, shift), size)).filter((place) => this.isFree(place, size));
+      const place = free.find((p) => length(minus(p, at)) < near && this.isClearOfParts(p, size)) || free[0];
+      return place ? this.take(place, size) : null;
     }
 
     // --- half-planes --------------------------------------------------------------------------------------
@@ -283,8 +298,7 @@ steplap.Symbols = (() => {
         const isFelt = scene.withValues && force && Math.abs(force.at(t)) > 1e-6 * scene.largestForce; // as with arrows, less is rounding
         text.textContent = !isSaid ? '' : `${steplap.words.sentence(subject, state)}${arrow}${isFelt ? `, ${steplap.data.quantity(force.at(t), force.unit, 4)}` : ''}`;
         text.setAttribute('class', 'state-text slips');
-        const width = 8.4 * text.textContent.length, ways = [14, 32, -16, 50, -34, 68, 86, 104];
-        this.put(text, [x, y], [width, 18], [...ways.map((dy) => [0, dy]), ...ways.map((dy) => [0.6 * width, dy]), ...ways.map((dy) => [-0.6 * width, dy])]);
+        if (isSaid) this.put(text, [x, y], [8.4 * text.textContent.length, 18]);
       });
     }
 
@@ -356,12 +370,15 @@ steplap.Symbols = (() => {
 
     // --- what drives, stops, loads ---------------------------------------------------------------------------------
     arc(element, shape) {
+      const load = this.scene.loadOf(element, shape);
+      if (load) this.acting(load);
+      if (load !== undefined) return;
       const style = shape.style || '', symbol = this.piece(element, { class: `symbol arc ${style}` }), channel = this.channel(element, shape), text = this.value(element);
-      const drawn = { spring: spiral, limit: stops, brake: shoes }[style], place = this.jointOf(shape);
+      const drawn = { spring: spiral, limit: stops, brake: shoes }[style] || turning, place = this.jointOf(shape);
       this.update((t, pose) => {
-        const at = this.screen(place, pose), turned = -pose(shape.at[0].body)[2], couple = channel ? channel.at(t) : 0;
-        symbol.setAttribute('d', drawn ? drawn(at, this.u, turned) : turning(at, 1.7 * this.u, turned, couple < 0));
-        this.showValue(text, channel ? steplap.data.quantity(couple, channel.unit, 4) : '', add(at, [1.9 * this.u, -1.2 * this.u]), [1, 0]);
+        const at = this.screen(place, pose), turned = -pose(shape.at[0].body)[2];
+        symbol.setAttribute('d', drawn(at, this.u, turned, false));
+        this.showValue(text, channel ? steplap.data.quantity(channel.at(t), channel.unit, 4) : '', add(at, [1.9 * this.u, -1.2 * this.u]), [1, 0]);
       });
     }
     // Where what turns one body against another is drawn: at the pin between them; against the ground at any pin of the body.
@@ -379,23 +396,15 @@ steplap.Symbols = (() => {
       const farthest = Math.max(...body.points.map(way)), front = body.points.filter((p) => way(p) > farthest - 0.02 * body.reach);
       return { body: place.body, point: scaled(front.reduce(add), 1 / front.length) };
     }
+    // A drive whose size the results do not have is drawn without one.
     arrow(element, shape) {
-      if (shape.style === 'load') { this.load(element, shape); return; }
-      const symbol = this.piece(element, { class: 'symbol drive' });
-      if (element.as && this.driven(element, shape, symbol)) return;
-      const place = this.frontOf(shape), channel = this.channel(element, shape), text = this.value(element);
+      const load = this.scene.loadOf(element, shape);
+      if (load) this.acting(load);
+      if (load !== undefined || shape.style === 'load') return;
+      const symbol = this.piece(element, { class: 'symbol drive' }), place = this.frontOf(shape);
       this.update((t, pose) => {
         const at = this.screen(place, pose), d = this.direction(shape, pose), tip = add(at, scaled(d, 4.5 * this.u));
         symbol.setAttribute('d', path([at, tip]) + arrowHead(tip, d, 0.9 * this.u));
-        this.showValue(text, channel ? steplap.data.quantity(channel.at(t), channel.unit, 4) : '', tip, d);
-      });
-    }
-    load(element, shape) {
-      const x = this.scene.run.channel(`${element.name}.force_x`), y = this.scene.run.channel(`${element.name}.force_y`);
-      if (!x || !y) return;
-      this.force(element, shape, (t, pose) => {
-        const force = [x.at(t), y.at(t)];
-        return { at: this.screen(shape.at[0], pose), d: flipped(unit(force)), force: length(force) };
       });
     }
   }
@@ -423,8 +432,8 @@ steplap.Symbols = (() => {
   // --- about a point ------------------------------------------------------------------------------------------------
   const onCircle = (at, r, angle) => add(at, [r * Math.cos(angle), r * Math.sin(angle)]);
   const arcPath = (at, r, from, to) => { const p = onCircle(at, r, from), q = onCircle(at, r, to); return `M${p.map((v) => v.toFixed(2)).join(' ')}A${r} ${r} 0 ${Math.abs(to - from) > Math.PI ? 1 : 0} ${to > from ? 1 : 0} ${q.map((v) => v.toFixed(2)).join(' ')}`; };
-  function turning(at, r, turned, isClockwise) {
-    const sign = isClockwise ? 1 : -1, end = turned + sign * 2.4, d = scaled(across([Math.cos(end), Math.sin(end)]), sign);
+  function turning(at, u, turned, isClockwise) {
+    const r = 1.7 * u, sign = isClockwise ? 1 : -1, end = turned + sign * 2.4, d = scaled(across([Math.cos(end), Math.sin(end)]), sign);
     return arcPath(at, r, turned - sign * 2.0, end) + arrowHead(add(onCircle(at, r, end), scaled(d, 0.35 * r)), d, 0.6 * r);
   }
   function spiral(at, u, turned) {
@@ -435,6 +444,7 @@ steplap.Symbols = (() => {
   function stops(at, u, turned) { return arcPath(at, 1.5 * u, turned - 0.9, turned + 0.9) + [-0.9, 0.9].map((w) => path([onCircle(at, 1.1 * u, turned + w), onCircle(at, 1.9 * u, turned + w)])).join(''); }
   function shoes(at, u, turned) { return arcPath(at, 1.1 * u, turned - 0.6, turned + 0.6) + arcPath(at, 1.1 * u, turned + Math.PI - 0.6, turned + Math.PI + 0.6); }
 
+  Symbols.prototype.turning = turning;
   Symbols.types = {};
   for (const type of ['spring', 'rope', 'contact', 'touch', 'faces', 'edge_touch', 'friction', 'pin', 'bushing', 'weld', 'rail', 'rod', 'neutral', 'arc', 'arrow']) Symbols.types[type] = Symbols.prototype[type];
   Symbols.types.joint = () => {}; // its sheets are drawn
@@ -442,9 +452,14 @@ steplap.Symbols = (() => {
   Object.assign(steplap.Scene.prototype, {
     buildSymbols() {
       this.takenTexts = [];
-      // Room for texts: not on names of bodies, nor on texts that are there before.
+      this.partBoxes = [];
+      // Room for texts: not on names and centres of bodies, nor on texts that are there before.
       const middleAndSize = ([x0, y0, x1, y1]) => [0.5 * (x0 + x1), 0.5 * (y0 + y1), x1 - x0 + 4, y1 - y0];
-      this.updaters.push((t, pose) => { this.takenTexts = this.nameBoxes(pose).map(middleAndSize); });
+      const all = this.bodies.size > mostParts ? [] : [...this.bodies.values()];
+      this.updaters.push((t, pose) => {
+        this.takenTexts = [...this.nameBoxes(pose).map(middleAndSize), ...all.map((body) => [...this.toScreen(pose(body.name)), 4, 4])];
+        this.partBoxes = all.map((body) => middleAndSize(this.boxOnScreen(body, pose)));
+      });
       this.symbols = new Symbols(this);
       this.updaters.push((t, pose) => { this.symbols.showMoved(t); this.showHappenings(t, pose); this.symbols.placeValues(); });
     },
@@ -454,11 +469,10 @@ steplap.Symbols = (() => {
       let largest = 0;
       for (const e of this.elements)
         for (const shape of e.shapes)
-          if (['contact', 'touch', 'edge_touch', 'faces'].includes(shape.type) || shape.style === 'load')
-            for (const quantity of shape.style === 'load' ? ['force_x', 'force_y'] : [shape.quantity]) {
-              const extreme = this.run.summary.extremes[`${e.name}.${quantity}`];
-              if (extreme) largest = Math.max(largest, Math.abs(extreme.min), Math.abs(extreme.max));
-            }
+          if (['contact', 'touch', 'edge_touch', 'faces'].includes(shape.type)) {
+            const extreme = this.run.summary.extremes[`${e.name}.${shape.quantity}`];
+            if (extreme) largest = Math.max(largest, Math.abs(extreme.min), Math.abs(extreme.max));
+          }
       return largest;
     },
   });

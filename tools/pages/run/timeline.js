@@ -2,7 +2,8 @@
 // stretches in which it does and a sign where it begins and ends. Signs that would lie on each other are one with a count.
 steplap.Timeline = (() => {
   const make = steplap.make;
-  const size = 14, laneHeight = 20, thumb = 16;
+  const size = 14, laneHeight = 20, thumb = 16, causeHeight = 22; // pixels
+  const mostCauses = 3; // loads with a curve
 
   // What begins a stretch, and what ends it.
   const stretches = [{ begins: ['slip'], ends: ['stick', 'free', 'apart'], class: 'slipping', word: 'slips' }, { begins: ['open'], ends: ['close', 'strike'], class: 'open', word: 'is open' }];
@@ -57,9 +58,9 @@ steplap.Timeline = (() => {
   }
 
   return class Timeline {
-    // `end`: of the axis of time; runs may go on.
-    constructor(runs, end, { lanes, axis, slider, onTime }) {
-      Object.assign(this, { runs, end, box: lanes, axisBox: axis, slider, onTime });
+    // `end`: of the axis of time; runs may go on. `causes`: of each run (causes.js).
+    constructor(runs, end, { causes, lanes, axis, slider, onTime }) {
+      Object.assign(this, { runs, end, causes, box: lanes, axisBox: axis, slider, onTime });
       this.most = runs.length > 1 ? 3 : 5;
       this.lanes = runs.map((run) => ({ run, lanes: lanesOf(run, this.most) }));
       this.box.addEventListener('pointerdown', (event) => {
@@ -93,18 +94,47 @@ steplap.Timeline = (() => {
       this.measure(width);
       this.box.replaceChildren();
       const all = this.lanes.filter(({ lanes }) => lanes.length);
-      for (const { run, lanes } of this.lanes) {
+      this.lanes.forEach(({ run, lanes }, k) => {
         if (this.runs.length > 1) this.box.append(make('h4', {}, run.name));
+        this.box.append(...this.drawCauses(this.causes[k]));
         if (lanes.length) this.box.append(this.drawLanes(run, lanes));
         else if (this.runs.length > 1 || !all.length) this.box.append(make('p', { class: 'note' }, 'Nothing slipped, opened or broke.'));
-      }
+      });
       this.cursor = make('div', { class: 'time-cursor', 'aria-hidden': 'true' });
-      this.cursor.hidden = !all.length;
       this.box.append(this.cursor);
       this.drawAxis();
       // The middle of the thumb stands where the axis says.
       this.slider.style.marginLeft = `${this.left - thumb / 2}px`;
       this.slider.style.width = `${this.width - this.left - this.right + thumb}px`;
+    }
+    // The loads: a sentence and a curve each.
+    drawCauses(causes) {
+      const most = this.runs.length > 1 ? 1 : mostCauses, rest = causes.length - most;
+      const shown = causes.slice(0, most).map((cause) => make('div', { class: 'cause', style: `--left:${this.left}px` }, make('p', {}, cause.sentence), this.causeCurve(cause)));
+      if (rest > 0) shown.push(make('details', { class: 'cause more' }, make('summary', {}, `${rest} more load${rest > 1 ? 's' : ''}`), make('p', {}, causes.slice(most).map((c) => c.sentence).join(' '))));
+      return shown;
+    }
+    // To its own scale, about zero.
+    causeCurve({ times, values, peak, sentence }) {
+      const svg = make('svg', { viewBox: `0 0 ${this.width} ${causeHeight}`, width: this.width, height: causeHeight, role: 'img', 'aria-label': sentence });
+      const reaches = (sign) => (values.some((v) => sign * v > 0.02 * peak) ? 1 : 0), [up, down] = [reaches(1), reaches(-1)];
+      const y = (v) => 1 + ((causeHeight - 2) * (up * peak - v)) / ((up + down) * peak || 1), points = this.thinned(times, values).map(([t, v]) => `${this.xOf(t).toFixed(1)} ${y(v).toFixed(1)}`);
+      const first = this.xOf(Math.min(times[0], this.end)), last = this.xOf(Math.min(times[times.length - 1], this.end));
+      svg.append(make('path', { class: 'cause-area', d: `M${first.toFixed(1)} ${y(0).toFixed(1)}L${points.join('L')}L${last.toFixed(1)} ${y(0).toFixed(1)}Z` }),
+        make('line', { class: 'lane', x1: this.left, x2: this.width - this.right, y1: y(0), y2: y(0) }), make('path', { class: 'cause-curve', d: `M${points.join('L')}` }));
+      return svg;
+    }
+    // The least and the largest value of each pixel, up to the end of the axis.
+    thinned(times, values) {
+      const found = new Map();
+      times.forEach((t, i) => {
+        if (t > this.end) return;
+        const x = Math.round(this.xOf(t)), pair = found.get(x) || [[t, values[i]], [t, values[i]]];
+        if (values[i] < pair[0][1]) pair[0] = [t, values[i]];
+        if (values[i] > pair[1][1]) pair[1] = [t, values[i]];
+        found.set(x, pair);
+      });
+      return [...found.values()].flatMap((pair) => (pair[0][0] <= pair[1][0] ? pair : [pair[1], pair[0]]));
     }
     drawLanes(run, lanes) {
       const step = this.isNarrow ? laneHeight + 14 : laneHeight, height = lanes.length * step + 2;
