@@ -11,16 +11,15 @@
       const group = make('g', { class: 'ghost', 'data-ghost-of': body.name }, ...shapes);
       this.ghostLayer.append(group);
       this.updaters.push((t, pose) => {
-        const at = this.ghostPose(body.name, pose), now = pose(body.name);
-        const isSeen = body.points.some((p) => length(minus(apply(at, p), apply(now, p))) * this.scale > least);
-        group.style.display = isSeen && !this.isLeftBehind(body.name) ? '' : 'none';
-        if (isSeen) this.putAt(group, at);
+        const isSeen = this.shiftOf(body, pose) * this.scale > least;
+        group.style.display = isSeen ? '' : 'none';
+        if (isSeen) this.putAt(group, this.ghostPose(body.name, pose));
       });
     },
-    // Stands a body's ghost on ground that passes by?
-    isLeftBehind(name) {
-      const journey = this.seenFrom === 'ground' ? null : this.journey();
-      return Boolean(journey) && !journey.carried && this.isHeld(this.carrierOf(name));
+    // How far a body is drawn from its ghost, m.
+    shiftOf(body, pose) {
+      const at = this.ghostPose(body.name, pose), now = pose(body.name);
+      return Math.max(0, ...body.points.map((p) => length(minus(apply(at, p), apply(now, p)))));
     },
     // Puts what is drawn in a body's axes where the body is.
     putAt(group, [x, y, angle]) {

@@ -129,7 +129,7 @@
     at('play').replaceChildren(steplap.icon(isPlaying ? 'pause' : 'play'), isPlaying ? ' Pause' : ' Play');
     at('play').setAttribute('aria-pressed', String(isPlaying));
     last = null;
-    // The page opens at its worst instant, as a film shows its best picture: it plays from the beginning.
+    // The page opens where one sees what happened, as a film shows its best picture: it plays from the beginning.
     if (isPlaying && (t >= timeline.end || isUntouched)) show(0);
     if (isPlaying) { isUntouched = false; requestAnimationFrame(frame); }
   }
@@ -239,14 +239,6 @@
     document.body.setAttribute('data-ready', 'true');
   }
 
-  // The worst instant; without limits that of the first event that is told of. Where the motion about it is not written (machine.js), the
-  // nearest instant that is.
-  function opening() {
-    const told = runs.flatMap((run) => steplap.overview.of(run).story.map((entry) => entry.from)), wanted = worst ?? (told.length ? Math.min(...told) : 0);
-    const guessed = scenes.find((scene) => scene.isGuessed(wanted));
-    return guessed ? guessed.run.nearestTime(wanted) : wanted;
-  }
-
   showTitles();
   steplap.verdict.build(runs);
   buildScenes();
@@ -264,7 +256,9 @@
   at('near').hidden = at('limits').hidden && at('story').hidden;
   at('overview').classList.toggle('alone', at('near').hidden);
   fit();
-  show(opening());
+  const opening = steplap.overview.openingOf(scenes);
+  if (opening > timeline.end) { setHorizon(end); timeline.build(); }
+  show(opening);
   steplap.page = { scenes, view, show: go, time: () => t, timeline, shown: performance.now() };
   // After the browser has painted: a frame to paint in, and what comes after it.
   requestAnimationFrame(() => setTimeout(buildRest));

@@ -44,6 +44,65 @@ steplap.overview = (() => {
     const known = runs.map(of).filter((o) => o.worst_instant !== null && o.worst_instant !== undefined);
     return known.length ? known.reduce((a, b) => (shareOf(b) > shareOf(a) ? b : a)).worst_instant : null;
   }
+  // --- the instant at which one sees what the verdict or the story says ------------------------------------------
+  const leaders = ['tips', 'comes apart', 'breaks', 'slips', 'lifts', 'opens']; // of a run without criteria, the gravest first
+  const leastTurn = (3 * Math.PI) / 180; // of a body that is seen to tip
+  // When what touches presses most.
+  function pressedAt(run, entry) {
+    const force = run.summary.extremes[`${entry.who[0]}.force`];
+    return entry.what === 'closes' && force ? force.t_max : entry.from;
+  }
+  // Where a slide is largest, or has come to rest.
+  function endOf(run, entry) {
+    const slide = run.summary.extremes[`${entry.who[0]}.slide`];
+    if (slide && slide.max > slide.min) return slide.max > -slide.min ? slide.t_max : slide.t_min;
+    return entry.to ?? run.end;
+  }
+  // Of bodies how far one turns up to `until`, and the first instant at which it has.
+  function furthestTurn(run, names, until) {
+    let best = { t: 0, turn: 0 };
+    for (const angle of names.map((name) => run.channel(`${name}.theta`)).filter(Boolean)) {
+      const turns = Array.from(angle.times).map((t, i) => (t <= until ? Math.abs(angle.value(i) - angle.value(0)) : 0)), turn = Math.max(...turns);
+      if (turn > best.turn) best = { t: angle.times[turns.findIndex((v) => v > 0.99 * turn)], turn };
+    }
+    return best;
+  }
+  // What tips is seen at its largest turn, what slides where it comes to rest, what lifts when its body has turned or is furthest away, before
+  // something strikes.
+  function instantOfEntry(run, entry, story) {
+    const placesOf = (name) => (run.drawing.elements.find((e) => e.name === name) || { at: [] }).at;
+    const bodies = entry.what === 'tips' ? entry.who : entry.what === 'lifts' ? entry.who.flatMap((name) => placesOf(name).slice(0, 1).map((p) => p.body)) : [];
+    const strikes = entry.what === 'lifts' ? story.filter((e) => e.what === 'closes' && e.from > entry.from).map((e) => e.from) : [];
+    const { t, turn } = furthestTurn(run, bodies, Math.min(run.end, ...strikes)), gap = run.summary.extremes[`${entry.who[0]}.gap`];
+    if (turn > leastTurn) return t;
+    return entry.what === 'slips' ? endOf(run, entry) : entry.what === 'lifts' && gap ? gap.t_max : pressedAt(run, entry);
+  }
+  function largestShift(scene, t) {
+    const pose = scene.look(t, scene.seenFrom, scene.magnification);
+    return Math.max(0, ...[...scene.bodies.values()].map((body) => scene.shiftOf(body, pose)));
+  }
+  const isSeenToMove = (scene, t) => largestShift(scene, t) > 0.005 * scene.size;
+  // Where nothing is seen to have happened: when the machine is furthest from where it started.
+  function furthestInstant(scene) {
+    const times = Array.from({ length: 61 }, (_, k) => (scene.run.end * k) / 60), far = times.map((t) => largestShift(scene, t));
+    return times[far.indexOf(Math.max(...far))];
+  }
+  function instantOf(scene) {
+    const { run } = scene, { story, reason, worst_instant: worst, utilisations } = of(run);
+    const isJudged = utilisations.some((u) => u.is_judged), slid = story.find((e) => e.what === 'slips' && e.who.length === 1 && reason.startsWith(`Joint '${e.who[0]}' slips`));
+    if (slid) return endOf(run, slid);
+    if (isJudged && worst !== null) return worst;
+    const told = leaders.map((what) => story.find((e) => e.what === what)).find(Boolean) || story[0], t = told ? instantOfEntry(run, told, story) : 0;
+    const furthest = isSeenToMove(scene, t) ? t : furthestInstant(scene);
+    return isSeenToMove(scene, furthest) ? furthest : t;
+  }
+  // Of several runs that of the run that is nearest to its limits. Where the motion about it is not written (machine.js), the nearest
+  // instant that is.
+  function openingOf(scenes) {
+    const worst = worstOf(scenes.map((s) => s.run)), first = scenes.find((s) => worst !== null && of(s.run).worst_instant === worst) || scenes[0], wanted = instantOf(first);
+    const guessed = scenes.find((scene) => scene.isGuessed(wanted));
+    return guessed ? guessed.run.nearestTime(wanted) : wanted;
+  }
   // The next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten: ends of axes of time.
   function nice(t) {
     const power = 10 ** Math.floor(Math.log10(t));
@@ -58,5 +117,5 @@ steplap.overview = (() => {
     const last = nice(1.08 * Math.max(...events, ...runs.map((run) => of(run).worst_instant ?? 0)));
     return last < 0.6 * end ? last : end;
   }
-  return { of, badgeOf, worstOf, horizonOf };
+  return { of, badgeOf, worstOf, openingOf, horizonOf };
 })();

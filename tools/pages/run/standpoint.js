@@ -227,9 +227,11 @@
         return seen.get(name);
       };
     },
-    // Where a body would be drawn if it stood on its carrier as at the start.
+    // Where a body would be drawn if it stood on its carrier as at the start. Ground that passes by carries it as far as the vehicle drives.
     ghostPose(name, pose) {
-      const carrier = this.carrierOf(name), rest = relative(this.reference(carrier), this.reference(name)), on = pose(carrier);
+      const carrier = this.carrierOf(name), rest = relative(this.reference(carrier), this.reference(name));
+      const journey = this.seenFrom === 'ground' ? null : this.journey(), isPassing = Boolean(journey) && !journey.carried && this.isHeld(carrier);
+      const on = isPassing ? this.reference(carrier) : pose(carrier);
       return [...apply(on, rest), on[2] + rest[2]];
     },
   });
