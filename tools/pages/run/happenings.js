@@ -57,7 +57,7 @@
           group.append(h.sign);
         }
         const words = text.textContent ? 8.4 * text.textContent.length + 6 : 0, width = size + words, [x, y] = this.toScreen(h.place(pose));
-        const place = this.symbols.room([x, y], [width, size + 2], steps(width)) || this.symbols.room([x, y], [size, size + 2], steps(size));
+        const place = this.symbols.room([x, y], [width, size + 2], steplap.waysAround(width)) || this.symbols.room([x, y], [size, size + 2], steplap.waysAround(size));
         const isFull = place && words > 0 && place.size[0] === width;
         if (!isFull) text.textContent = '';
         const at = place ? place.at : [x, y];
@@ -67,10 +67,4 @@
       }
     },
   });
-  // Above, beside, below; further out where there is no room.
-  function steps(width) {
-    const ways = [];
-    for (const dy of [-18, 18, -36, 36, 0, -54, 54, -72, 72, -90, 90]) for (const dx of [0, 0.6, -0.6]) if (dx || dy) ways.push([dx * width, dy]);
-    return ways;
-  }
 })();
