@@ -112,6 +112,7 @@
     // Is all of the box on the body, seen (or, beside it, on none)?
     isNameClear(name, box, isBeside, pose) {
       if (box[0] < 2 || box[1] < 2 || box[2] > this.width - 2 || box[3] > this.height - this.footHeight() - 4) return false;
+      if (this.lensBoxes().some((lens) => overlap(box, lens, 2))) return false;
       return grid(box[0], box[2], 5).every((x) => grid(box[1], box[3], 3).every((y) => {
         const rank = this.rankOf(name, [x, y], pose);
         return isBeside ? rank === 1 : rank === 0 || rank === 2;

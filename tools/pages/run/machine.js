@@ -124,6 +124,7 @@ steplap.Scene = (() => {
       this.fittedScale = scale;
       this.svg.setAttribute('viewBox', `0 0 ${width} ${this.height}`);
       this.setView(this.view);
+      this.placeLens();
       this.fitSymbols();
       this.spreadNames();
     }
@@ -133,6 +134,7 @@ steplap.Scene = (() => {
       for (const name of ['width', 'u', 'height', 'middle', 'fittedScale']) this[name] = other[name];
       this.svg.setAttribute('viewBox', `0 0 ${this.width} ${this.height}`);
       this.setView(other.view);
+      this.placeLens();
       this.fitSymbols();
       for (const [name, mark] of this.marks) {
         const same = other.marks.get(name);
@@ -162,6 +164,7 @@ steplap.Scene = (() => {
       this.buildRoads();
       this.buildSymbols();
       this.buildLegend();
+      this.buildLens();
     }
     shapesOf(body) {
       const path = (points, isClosed) => make('path', { d: 'M' + points.map((p) => p.join(' ')).join('L') + (isClosed ? 'Z' : '') });

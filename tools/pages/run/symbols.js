@@ -444,6 +444,7 @@ steplap.Symbols = (() => {
   function stops(at, u, turned) { return arcPath(at, 1.5 * u, turned - 0.9, turned + 0.9) + [-0.9, 0.9].map((w) => path([onCircle(at, 1.1 * u, turned + w), onCircle(at, 1.9 * u, turned + w)])).join(''); }
   function shoes(at, u, turned) { return arcPath(at, 1.1 * u, turned - 0.6, turned + 0.6) + arcPath(at, 1.1 * u, turned + Math.PI - 0.6, turned + Math.PI + 0.6); }
 
+  steplap.arrowPath = (from, tip, size) => path([from, tip]) + arrowHead(tip, unit(minus(tip, from)), size);
   Symbols.prototype.turning = turning;
   Symbols.types = {};
   for (const type of ['spring', 'rope', 'contact', 'touch', 'faces', 'edge_touch', 'friction', 'pin', 'bushing', 'weld', 'rail', 'rod', 'neutral', 'arc', 'arrow']) Symbols.types[type] = Symbols.prototype[type];
@@ -457,7 +458,7 @@ steplap.Symbols = (() => {
       const middleAndSize = ([x0, y0, x1, y1]) => [0.5 * (x0 + x1), 0.5 * (y0 + y1), x1 - x0 + 4, y1 - y0];
       const all = this.bodies.size > mostParts ? [] : [...this.bodies.values()];
       this.updaters.push((t, pose) => {
-        this.takenTexts = [...this.nameBoxes(pose).map(middleAndSize), ...all.map((body) => [...this.toScreen(pose(body.name)), 4, 4])];
+        this.takenTexts = [...[...this.nameBoxes(pose), ...this.lensBoxes()].map(middleAndSize), ...all.map((body) => [...this.toScreen(pose(body.name)), 4, 4])];
         this.partBoxes = all.map((body) => middleAndSize(this.boxOnScreen(body, pose)));
       });
       this.symbols = new Symbols(this);
