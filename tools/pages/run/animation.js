@@ -16,7 +16,10 @@ steplap.animation = (() => {
   function joined(parts) {
     const all = new Uint8Array(parts.reduce((sum, p) => sum + p.length, 0));
     let at = 0;
-    for (const p of parts) { all.set(p, at); at += p.length; }
+    for (const p of parts) {
+      all.set(p, at);
+      at += p.length;
+    }
     return all;
   }
   function chunk(type, data) {

@@ -70,9 +70,10 @@
     // Lines of a body: bars, its outline if it has two points, struts; [from, to, half of the width in pixels].
     linesOf(body) {
       if (!body.lines)
-        body.lines = [...body.segments.map(([x0, y0, x1, y1, thickness]) => [[x0, y0], [x1, y1], 0.5 * (thickness || 0)]),
-          ...(body.outline.length === 2 ? [[...body.outline, 0]] : []),
-          ...this.strutsOf(body).map(([a, b]) => [a, b, 0])];
+        body.lines = [
+          ...body.segments.map(([x0, y0, x1, y1, thickness]) => [[x0, y0], [x1, y1], 0.5 * (thickness || 0)]),
+          ...(body.outline.length === 2 ? [[...body.outline, 0]] : []), ...this.strutsOf(body).map(([a, b]) => [a, b, 0])
+        ];
       return body.lines;
     },
     isOnLine(body, p) {

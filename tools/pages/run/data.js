@@ -43,7 +43,8 @@ steplap.data = (() => {
     let low = 0, high = times.length;
     while (low < high) {
       const middle = (low + high) >> 1;
-      if (times[middle] <= t) low = middle + 1; else high = middle;
+      if (times[middle] <= t) low = middle + 1;
+      else high = middle;
     }
     return low - 1;
   }
@@ -86,7 +87,8 @@ steplap.data = (() => {
       for (const pattern of patterns) {
         const text = pattern.replace(/[.+^${}()|[\]\\]/g, '\\$&').replace(/\*/g, '.*').replace(/\?/g, '.');
         const expression = new RegExp('^' + text + '$', 's');
-        for (const name of this.channels.keys()) if (expression.test(name)) found.push(name);
+        for (const name of this.channels.keys())
+          if (expression.test(name)) found.push(name);
       }
       return found;
     }
@@ -124,9 +126,12 @@ steplap.data = (() => {
 
   // Of the sheets of step-lap joints one kind of interface a corner: a core has many.
   function corners(run) {
-    const cores = run.drawing.cores || [], cornerOf = (s) => (cores.some((core) => s.name.startsWith(`${core.name}: `)) ? s.name.replace(/(, packets? .*| \d+)$/, '') : s.name);
+    const cores = run.drawing.cores || [],
+          cornerOf = (s) =>
+            (cores.some((core) => s.name.startsWith(`${core.name}: `)) ? s.name.replace(/(, packets? .*| \d+)$/, '') : s.name);
     const found = new Map();
-    for (const sheet of run.drawing.sheets) if (!found.has(cornerOf(sheet))) found.set(cornerOf(sheet), sheet);
+    for (const sheet of run.drawing.sheets)
+      if (!found.has(cornerOf(sheet))) found.set(cornerOf(sheet), sheet);
     return [...found.values()];
   }
 
@@ -137,8 +142,21 @@ steplap.data = (() => {
   // A machine of which only the drawing is known, as it is given.
   const still = (name, drawing) => new Run({ name, drawing, summary: { extremes: {} }, events: [], channels: [], poseOf: () => null });
   const runs = raw.runs.map((r) => new Run(r));
-  return { program: raw.program, modes: raw.modes, loadCases: raw.load_cases, still, runs,
-    Run, indexBefore, scaleFor, quantity, plain, pretty, corners, unique };
+  return {
+    program: raw.program,
+    modes: raw.modes,
+    loadCases: raw.load_cases,
+    still,
+    runs,
+    Run,
+    indexBefore,
+    scaleFor,
+    quantity,
+    plain,
+    pretty,
+    corners,
+    unique
+  };
 })();
 
 // Elements of the page; texts only ever as text.

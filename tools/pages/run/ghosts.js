@@ -24,7 +24,7 @@
     // Puts what is drawn in a body's axes where the body is.
     putAt(group, [x, y, angle]) {
       const c = this.scale * Math.cos(angle), s = this.scale * Math.sin(angle), [sx, sy] = this.toScreen([x, y]);
-      group.setAttribute('transform', `matrix(${c} ${-s} ${-s} ${-c} ${sx} ${sy})`);
+      group.setAttribute('transform', `matrix(${c} ${- s} ${- s} ${- c} ${sx} ${sy})`);
     },
   });
 })();

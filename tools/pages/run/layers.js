@@ -1,8 +1,10 @@
 // Switches of the layers of a picture: names, forces, springs … A choice hides its layer in all pictures of a box.
 steplap.layers = (() => {
   const make = steplap.make;
-  const all = [['names', 'Names'], ['forces', 'Forces'], ['springs', 'Springs'],
-    ['contacts', 'Contacts'], ['markers', 'Markers'], ['ghosts', 'Start pose']];
+  const all = [
+    ['names', 'Names'], ['forces', 'Forces'], ['springs', 'Springs'], ['contacts', 'Contacts'], ['markers', 'Markers'],
+    ['ghosts', 'Start pose']
+  ];
   function build(box, pictures) {
     for (const [name, text] of all) {
       const choice = make('input', { type: 'checkbox', checked: '', 'data-layer': name });

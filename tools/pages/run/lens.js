@@ -12,8 +12,12 @@
   function decidedBy(run) {
     if (!steplap.overview) return null;
     const { utilisations, story } = steplap.overview.of(run), first = utilisations.find((u) => u.is_judged);
-    const told = story.filter((e) => e.what === 'slips' && e.who.length === 1 && e.amount && e.amount.unit === 'm').sort((a, b) => Math.abs(b.amount.value) - Math.abs(a.amount.value));
-    const isFirst = first && first.channel && first.channel.endsWith('.slide'), name = isFirst ? first.channel.slice(0, -6) : told.length ? told[0].who[0] : null;
+    const told = story.filter((e) => e.what === 'slips' && e.who.length === 1 && e.amount && e.amount.unit === 'm')
+                   .sort((a, b) => Math.abs(b.amount.value) - Math.abs(a.amount.value));
+    const isFirst = first && first.channel && first.channel.endsWith('.slide'),
+          name = isFirst ? first.channel.slice(0, -6)
+      : told.length      ? told[0].who[0]
+                         : null;
     const limited = utilisations.find((u) => u.channel === `${name}.slide` && u.limit);
     return name && { name, amount: Math.abs(isFirst ? first.value : told[0].amount.value), limit: limited ? limited.limit : null };
   }
@@ -22,11 +26,13 @@
   function contactOf(scene, name) {
     const element = scene.byName.get(name), sheet = scene.run.drawing.sheets.find((s) => s.joint === name);
     if (sheet) {
-      const rest = relative(scene.reference(sheet.active_part), scene.reference(sheet.limb)), ends = [middleOf(sheet.yoke), middleOf(sheet.limb_sheet)];
+      const rest = relative(scene.reference(sheet.active_part), scene.reference(sheet.limb)),
+            ends = [middleOf(sheet.yoke), middleOf(sheet.limb_sheet)];
       const isYoke = Math.max(...ends[0].span) < Math.max(...ends[1].span), point = isYoke ? seenIn(rest, ends[0].middle) : ends[1].middle;
       return { moving: { body: sheet.limb, point }, carrier: sheet.active_part, normal: null };
     }
-    const contact = element && scene.elements.find((e) => (element.contacts || [])[0] === e.name), shape = contact && contact.shapes.find((s) => s.type === 'contact' && s.direction);
+    const contact = element && scene.elements.find((e) => (element.contacts || [])[0] === e.name),
+          shape = contact && contact.shapes.find((s) => s.type === 'contact' && s.direction);
     return shape ? { moving: shape.at[0], carrier: shape.at[shape.at.length - 1].body, normal: shape.direction } : null;
   }
 
@@ -35,11 +41,26 @@
       const decided = decidedBy(this.run), contact = decided && decided.amount > 0 ? contactOf(this, decided.name) : null;
       if (!contact) return;
       const q = (v) => steplap.data.quantity(v, 'm', 3), names = [contact.carrier, contact.moving.body];
-      this.lens = { ...decided, ...contact, box: null, group: make('g', { class: 'lens', 'data-lens': decided.name }) };
-      const piece = (name, attributes) => { const node = make(name, attributes); this.lens.group.append(node); return node; };
-      Object.assign(this.lens, { leader: piece('path', { class: 'leader' }), sides: ['carrier', 'moving'].map((side) => piece('path', { class: `lens-${side}` })),
-        marks: piece('path', { class: 'lens-marks' }), ghost: piece('path', { class: 'lens-ghost' }), arrow: piece('path', { class: 'lens-arrow' }), frame: piece('circle', { class: 'lens-frame' }),
-        names: names.map((name) => { const text = piece('text', { class: 'lens-name' }); text.textContent = name; return text; }), text: piece('text', { class: 'lens-text' }) });
+      this.lens = {...decided, ...contact, box: null, group: make('g', { class: 'lens', 'data-lens': decided.name }) };
+      const piece = (name, attributes) => {
+        const node = make(name, attributes);
+        this.lens.group.append(node);
+        return node;
+      };
+      Object.assign(this.lens, {
+        leader: piece('path', { class: 'leader' }),
+        sides: ['carrier', 'moving'].map((side) => piece('path', { class: `lens-${side}` })),
+        marks: piece('path', { class: 'lens-marks' }),
+        ghost: piece('path', { class: 'lens-ghost' }),
+        arrow: piece('path', { class: 'lens-arrow' }),
+        frame: piece('circle', { class: 'lens-frame' }),
+        names: names.map((name) => {
+          const text = piece('text', { class: 'lens-name' });
+          text.textContent = name;
+          return text;
+        }),
+        text: piece('text', { class: 'lens-text' })
+      });
       this.lens.text.textContent = `slide up to ${q(decided.amount)}${decided.limit ? `, limit ${q(decided.limit)}` : ''}`;
       this.legendLayer.append(this.lens.group);
       this.updaters.push((t, pose) => this.showLens(t, pose));
@@ -48,9 +69,13 @@
     placeLens() {
       const { lens } = this, r = radiusFor(this.width), rest = (name) => this.reference(name);
       if (!lens) return;
-      const boxes = [...this.bodies.values()].map((body) => this.boxOnScreen(body, rest)), low = this.height - this.footHeight() - textHeight - r - 2;
-      const covered = ([x, y]) => boxes.reduce((sum, [x0, y0, x1, y1]) => sum + Math.max(0, Math.min(x1, x + r) - Math.max(x0, x - r)) * Math.max(0, Math.min(y1, y + r + textHeight) - Math.max(y0, y - r)), 0);
-      const corners = [r + air, low].flatMap((y) => [r + air, this.width - r - air].map((x) => [x, y])), best = corners.reduce((a, b) => (covered(b) < covered(a) ? b : a));
+      const boxes = [...this.bodies.values()].map((body) => this.boxOnScreen(body, rest)),
+            low = this.height - this.footHeight() - textHeight - r - 2;
+      const covered = ([x, y]) => boxes.reduce((sum, [x0, y0, x1, y1]) => sum +
+          Math.max(0, Math.min(x1, x + r) - Math.max(x0, x - r)) * Math.max(0, Math.min(y1, y + r + textHeight) - Math.max(y0, y - r)),
+        0);
+      const corners = [r + air, low].flatMap((y) => [r + air, this.width - r - air].map((x) => [x, y])),
+            best = corners.reduce((a, b) => (covered(b) < covered(a) ? b : a));
       const isNeeded = lens.amount * this.fittedScale < seen && covered(best) < room * 4 * r * r && this.height > 4 * r;
       Object.assign(lens, { at: best, r, box: isNeeded ? [best[0] - r, best[1] - r, best[0] + r, best[1] + r + textHeight] : null });
       lens.group.style.display = isNeeded ? '' : 'none';
@@ -64,10 +89,16 @@
     showLens(t, pose) {
       const { lens } = this;
       if (!lens.box) return;
-      const onScreen = (d) => { const p = turn(d, this.reference(lens.carrier)[2]); return [p[0], -p[1]]; }, { at, r } = lens, slide = onScreen(this.slideAt(t));
-      const along = length(slide) > 0 ? unit(slide) : [1, 0], n = lens.normal ? unit(onScreen(lens.normal)) : [along[1], -along[0]], tangent = [-n[1], n[0]];
-      const shift = scaled(tangent, (dot(slide, tangent) * shown * r) / lens.amount), tip = add(at, shift), text = (p) => p.map((v) => v.toFixed(1)).join(' ');
-      const half = (sign) => `M${text(add(at, scaled(tangent, r)))}A${r} ${r} 0 0 ${sign} ${text(minus(at, scaled(tangent, r)))}Z`, line = (p, d) => `M${text(p)}L${text(add(p, d))}`;
+      const onScreen = (d) => {
+        const p = turn(d, this.reference(lens.carrier)[2]);
+        return [p[0], -p[1]];
+      }, { at, r } = lens, slide = onScreen(this.slideAt(t));
+      const along = length(slide) > 0 ? unit(slide) : [1, 0], n = lens.normal ? unit(onScreen(lens.normal)) : [along[1], -along[0]],
+            tangent = [-n[1], n[0]];
+      const shift = scaled(tangent, (dot(slide, tangent) * shown * r) / lens.amount), tip = add(at, shift),
+            text = (p) => p.map((v) => v.toFixed(1)).join(' ');
+      const half = (sign) => `M${text(add(at, scaled(tangent, r)))}A${r} ${r} 0 0 ${sign} ${text(minus(at, scaled(tangent, r)))}Z`,
+            line = (p, d) => `M${text(p)}L${text(add(p, d))}`;
       const isLeft = dot([-tangent[1], tangent[0]], n) > 0, up = scaled(n, 0.45 * r);
       lens.sides[0].setAttribute('d', half(isLeft ? 0 : 1));
       lens.sides[1].setAttribute('d', half(isLeft ? 1 : 0));
@@ -82,7 +113,8 @@
         name.setAttribute('transform', `rotate(${(Math.abs(tangent[0]) < 1e-9 ? 90 : slope).toFixed(1)} ${text(middle)})`);
       });
       const end = this.toScreen(this.placed(lens.moving, pose)), reach = 3.4 * lens.text.textContent.length;
-      this.put(lens.text, lens.text.textContent, Math.min(Math.max(at[0], reach + 4), this.width - reach - 4), at[1] + r + textHeight - 3, 'middle');
+      this.put(lens.text, lens.text.textContent, Math.min(Math.max(at[0], reach + 4), this.width - reach - 4), at[1] + r + textHeight - 3,
+        'middle');
       lens.leader.setAttribute('d', `M${text(add(at, scaled(unit(minus(end, at)), r)))}L${text(end)}`);
     },
   });

@@ -9,19 +9,24 @@
 
   Object.assign(steplap.Symbols.prototype, {
     // What acts without an element of its own: speeds at the start, gravity.
-    loadsWithoutElement() { for (const load of this.scene.causes()) if (!load.shape || !this.scene.byName.has(load.element.name)) this.acting(load); },
+    loadsWithoutElement() {
+      for (const load of this.scene.causes())
+        if (!load.shape || !this.scene.byName.has(load.element.name)) this.acting(load);
+    },
     // An arrow or an arc, with its text.
     acting(load) {
       const isArc = load.shape && load.shape.type === 'arc', style = (load.shape && load.shape.style) || 'drive';
       const symbol = this.piece(load.element, { class: isArc ? `symbol arc load ${style}` : 'symbol drive load' });
-      const text = make('text', { class: 'load-text', 'data-load': load.element.name }), place = isArc ? this.jointOf(load.shape) : this.loadPlace(load);
+      const text = make('text', { class: 'load-text', 'data-load': load.element.name }),
+            place = isArc ? this.jointOf(load.shape) : this.loadPlace(load);
       this.scene.textLayer.append(text);
       this.update((t, pose) => {
         const value = load.at(t), isActing = Math.abs(value) > acting * load.peak, isBackward = isActing ? value < 0 : load.isBackward;
         symbol.classList.toggle('acting', isActing);
         text.textContent = this.loadText(load, value, isActing);
         const at = load.isField ? corner : this.screen(place, pose), share = isActing ? Math.max(least, Math.abs(value) / load.peak) : 1;
-        const middle = isArc ? this.bend(symbol, at, load, pose, isBackward) : this.broaden(symbol, at, load, share, isActing ? t : load.peakAt, pose, isBackward);
+        const middle = isArc ? this.bend(symbol, at, load, pose, isBackward)
+                             : this.broaden(symbol, at, load, share, isActing ? t : load.peakAt, pose, isBackward);
         const width = 8.2 * text.textContent.length;
         this.put(text, middle, [width, 14], load.isField ? [[0.5 * width + this.u, 0]] : undefined);
       });
@@ -31,7 +36,9 @@
       return `${element.signal || element.name}${isActing ? ` ${text(Math.abs(value))}` : `, ${text(peak)} at most`}`;
     },
     // Drives and motors stand before what they move, forces where they act.
-    loadPlace({ shape, along }) { return !shape ? null : along ? shape.at[0] : this.frontOf(shape); },
+    loadPlace({ shape, along }) { return !shape ? null
+                                    : along     ? shape.at[0]
+                                                : this.frontOf(shape); },
     bend(symbol, at, load, pose, isBackward) {
       symbol.setAttribute('d', this.turning(at, this.u, -pose(load.shape.at[0].body)[2], isBackward));
       return at;
@@ -47,7 +54,10 @@
       symbol.setAttribute('d', broadArrow(tail, tip, scaled(d, isBackward ? -1 : 1), this.u));
       return scaled(add(tail, tip), 0.5);
     },
-    forceDirection(force) { const d = [force[0], -force[1]]; return length(d) > 0 ? scaled(d, 1 / length(d)) : [0, 1]; },
+    forceDirection(force) {
+      const d = [force[0], -force[1]];
+      return length(d) > 0 ? scaled(d, 1 / length(d)) : [0, 1];
+    },
   });
   // Closed, so that it can be filled or hollow.
   function broadArrow(tail, tip, d, u) {

@@ -5,12 +5,14 @@ steplap.overview = (() => {
     hold: 'All criteria of the model are met.',
     inspect: 'At least one criterion asks for an inspection.',
     reject: 'At least one criterion rejects the machine.',
-    open: 'Not every criterion could be judged.' };
+    open: 'Not every criterion could be judged.'
+  };
   const words = { hold: 'HOLD', inspect: 'INSPECT', reject: 'REJECT', open: 'OPEN' };
 
   function trustOf(summary, distrust) {
     if (distrust) return { level: 'none', text: `Not to be trusted: ${distrust}.` };
-    return summary.global_error ? { level: 'good', text: 'Errors are estimated by a finer run.' }
+    return summary.global_error
+      ? { level: 'good', text: 'Errors are estimated by a finer run.' }
       : { level: 'limited', text: `Errors are not estimated: ${summary.error_not_estimated || 'nobody asked for it'}.` };
   }
   function reasonOf(summary, judgement) {
@@ -21,14 +23,23 @@ steplap.overview = (() => {
   function withoutOverview(run) {
     const judgement = run.summary.judgement;
     const moved = run.events.filter((e) => ['slip', 'apart', 'break'].includes(e[4])).map((e) => e[1]);
-    return { isOld: true, verdict: judgement ? judgement.verdict : null, reason: reasonOf(run.summary, judgement), trust: trustOf(run.summary, judgement && judgement.distrust),
-      worst_instant: null, story: [], utilisations: [], moved: [...new Set(moved)] };
+    return {
+      isOld: true,
+      verdict: judgement ? judgement.verdict : null,
+      reason: reasonOf(run.summary, judgement),
+      trust: trustOf(run.summary, judgement && judgement.distrust),
+      worst_instant: null,
+      story: [],
+      utilisations: [],
+      moved: [...new Set(moved)]
+    };
   }
   const found = new WeakMap();
-  function of(run) {
+  function of (run) {
     if (!found.has(run)) {
       const given = run.summary.overview;
-      found.set(run, given ? { story: [], utilisations: [], moved: [], worst_instant: null, ...given, isOld: false } : withoutOverview(run));
+      found.set(
+        run, given ? { story: [], utilisations: [], moved: [], worst_instant: null, ...given, isOld: false } : withoutOverview(run));
     }
     return found.get(run);
   }
@@ -40,7 +51,10 @@ steplap.overview = (() => {
   }
   // The worst instant of the run that is nearest to its limits, or furthest beyond; null if none has one.
   function worstOf(runs) {
-    const shareOf = (o) => { const u = o.utilisations.find((each) => each.is_judged) || o.utilisations[0]; return u ? u.share ?? Infinity : 0; };
+    const shareOf = (o) => {
+      const u = o.utilisations.find((each) => each.is_judged) || o.utilisations[0];
+      return u ? u.share ?? Infinity : 0;
+    };
     const known = runs.map(of).filter((o) => o.worst_instant !== null && o.worst_instant !== undefined);
     return known.length ? known.reduce((a, b) => (shareOf(b) > shareOf(a) ? b : a)).worst_instant : null;
   }
@@ -62,16 +76,19 @@ steplap.overview = (() => {
   function furthestTurn(run, names, until) {
     let best = { t: 0, turn: 0 };
     for (const angle of names.map((name) => run.channel(`${name}.theta`)).filter(Boolean)) {
-      const turns = Array.from(angle.times).map((t, i) => (t <= until ? Math.abs(angle.value(i) - angle.value(0)) : 0)), turn = Math.max(...turns);
+      const turns = Array.from(angle.times).map((t, i) => (t <= until ? Math.abs(angle.value(i) - angle.value(0)) : 0)),
+            turn = Math.max(...turns);
       if (turn > best.turn) best = { t: angle.times[turns.findIndex((v) => v > 0.99 * turn)], turn };
     }
     return best;
   }
-  // What tips is seen at its largest turn, what slides where it comes to rest, what lifts when its body has turned or is furthest away, before
-  // something strikes.
+  // What tips is seen at its largest turn, what slides where it comes to rest, what lifts when its body has turned or is furthest away,
+  // before something strikes.
   function instantOfEntry(run, entry, story) {
     const placesOf = (name) => (run.drawing.elements.find((e) => e.name === name) || { at: [] }).at;
-    const bodies = entry.what === 'tips' ? entry.who : entry.what === 'lifts' ? entry.who.flatMap((name) => placesOf(name).slice(0, 1).map((p) => p.body)) : [];
+    const bodies = entry.what === 'tips' ? entry.who
+      : entry.what === 'lifts'           ? entry.who.flatMap((name) => placesOf(name).slice(0, 1).map((p) => p.body))
+                                         : [];
     const strikes = entry.what === 'lifts' ? story.filter((e) => e.what === 'closes' && e.from > entry.from).map((e) => e.from) : [];
     const { t, turn } = furthestTurn(run, bodies, Math.min(run.end, ...strikes)), gap = run.summary.extremes[`${entry.who[0]}.gap`];
     if (turn > leastTurn) return t;
@@ -89,17 +106,20 @@ steplap.overview = (() => {
   }
   function instantOf(scene) {
     const { run } = scene, { story, reason, worst_instant: worst, utilisations } = of(run);
-    const isJudged = utilisations.some((u) => u.is_judged), slid = story.find((e) => e.what === 'slips' && e.who.length === 1 && reason.startsWith(`Joint '${e.who[0]}' slips`));
+    const isJudged = utilisations.some((u) => u.is_judged),
+          slid = story.find((e) => e.what === 'slips' && e.who.length === 1 && reason.startsWith(`Joint '${e.who[0]}' slips`));
     if (slid) return endOf(run, slid);
     if (isJudged && worst !== null) return worst;
-    const told = leaders.map((what) => story.find((e) => e.what === what)).find(Boolean) || story[0], t = told ? instantOfEntry(run, told, story) : 0;
+    const told = leaders.map((what) => story.find((e) => e.what === what)).find(Boolean) || story[0],
+          t = told ? instantOfEntry(run, told, story) : 0;
     const furthest = isSeenToMove(scene, t) ? t : furthestInstant(scene);
     return isSeenToMove(scene, furthest) ? furthest : t;
   }
   // Of several runs that of the run that is nearest to its limits. Where the motion about it is not written (machine.js), the nearest
   // instant that is.
   function openingOf(scenes) {
-    const worst = worstOf(scenes.map((s) => s.run)), first = scenes.find((s) => worst !== null && of(s.run).worst_instant === worst) || scenes[0], wanted = instantOf(first);
+    const worst = worstOf(scenes.map((s) => s.run)),
+          first = scenes.find((s) => worst !== null && of(s.run).worst_instant === worst) || scenes[0], wanted = instantOf(first);
     const guessed = scenes.find((scene) => scene.isGuessed(wanted));
     return guessed ? guessed.run.nearestTime(wanted) : wanted;
   }

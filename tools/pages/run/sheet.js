@@ -37,8 +37,8 @@ steplap.sheet = (() => {
   // `content`: { title, about, word, verdict, reason, parts, signed }.
   function fill(place, size, content) {
     place.style.fontSize = `${size}pt`;
-    place.replaceChildren(make('h1', {}, content.title), make('p', {}, content.about), verdictLine(content), ...content.parts,
-      signatures(content.signed));
+    place.replaceChildren(
+      make('h1', {}, content.title), make('p', {}, content.about), verdictLine(content), ...content.parts, signatures(content.signed));
     for (const t of place.querySelectorAll('table')) t.classList.remove('cards'); // paper is no telephone, also when printed from one
   }
   // Lays out contentOf(keep). `most`: what is kept if there is room, by name; `size` are points of the letters. `cuts`: [name, what is kept
@@ -47,19 +47,23 @@ steplap.sheet = (() => {
     const place = document.getElementById('sheet');
     place.classList.add('measured');
     const measure = () => (width * place.getBoundingClientRect().height) / place.getBoundingClientRect().width;
-    const isFitting = (keep) => { fill(place, keep.size, contentOf(keep)); return measure() <= height; };
-    const cutBy = (count) => ({ ...most, ...Object.fromEntries(cuts.slice(0, count)) }); // the last of a name counts
+    const isFitting = (keep) => {
+      fill(place, keep.size, contentOf(keep));
+      return measure() <= height;
+    };
+    const cutBy = (count) => ({...most, ...Object.fromEntries(cuts.slice(0, count)) }); // the last of a name counts
     // The fewest cuts that suffice, found by bisection.
     let few = 0, many = cuts.length;
     while (few < many) {
       const middle = (few + many) >> 1;
-      if (isFitting(cutBy(middle))) many = middle; else few = middle + 1;
+      if (isFitting(cutBy(middle))) many = middle;
+      else few = middle + 1;
     }
     let keep = cutBy(few);
     // Cuts without need are taken back, the last first.
     const undone = cuts.slice(0, few).map(([what], i) => [what, cutBy(i)[what]]).reverse();
     for (const [what, before] of [...undone.filter(([what]) => what === dear), ...undone.filter(([what]) => what !== dear)])
-      if (isFitting({ ...keep, [what]: before })) keep = { ...keep, [what]: before };
+      if (isFitting({...keep, [what]: before })) keep = {...keep, [what]: before };
     isFitting(keep);
     place.dataset.height = measure().toFixed(1);
     place.classList.remove('measured');
