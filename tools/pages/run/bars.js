@@ -5,8 +5,7 @@ steplap.bars = (() => {
   const first = 8, firstOfSeveral = 6, firstOfOthers = 3; // rows that are seen without asking for more
   const longest = 1.6; // of the limit: what is beyond it is cut off, with an arrow that says so
 
-  // Results of earlier versions do not say which shares are those of criteria: these have a limit.
-  const isJudged = (u) => u.is_judged ?? isKnown(u.limit);
+  const { isJudged } = steplap.overview;
   const isSlip = (u) => u.beyond && !isKnown(u.value) && u.share === 1; // its words stand in place of two equal numbers
   // A share that no criterion limits has no alarm colour, however large it is.
   const stateOf = (u) => (!isJudged(u) ? 'plain' : u.beyond || u.share > 1 ? 'bad' : u.share >= 0.7 ? 'warn' : 'good');

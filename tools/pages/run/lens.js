@@ -11,7 +11,7 @@
   // The slide that decided: of the first criterion, if it limits one, otherwise the largest that the story tells.
   function decidedBy(run) {
     if (!steplap.overview) return null;
-    const { utilisations, story } = steplap.overview.of(run), first = utilisations.find((u) => u.is_judged);
+    const { utilisations, story } = steplap.overview.of(run), first = utilisations.find(steplap.overview.isJudged);
     const told = story.filter((e) => e.what === 'slips' && e.who.length === 1 && e.amount && e.amount.unit === 'm')
                    .sort((a, b) => Math.abs(b.amount.value) - Math.abs(a.amount.value));
     const isFirst = first && first.channel && first.channel.endsWith('.slide'),

@@ -1,9 +1,10 @@
 // The moving machine: bodies of one run, drawn from drawing.json and the poses; symbols.js draws what acts on them.
 // Symbols have sizes of the screen (this.u), whatever is looked at how closely; bodies have their own.
 steplap.Scene = (() => {
-  const make = steplap.make, { add, minus, scaled, length, apply } = steplap.geometry, Box = steplap.Box;
+  const make = steplap.make, { add, minus, scaled, length, unit, apply } = steplap.geometry, Box = steplap.Box;
   const margin = 36; // for symbols, pixels
   const nearby = 0.75; // of the machine's size: what comes further from it than this leaves the picture
+  const most = 6; // machine's sizes that a picture shows to have the instant at which it opens
   const symbolSize = (width) => Math.min(11, Math.max(7, width / 70)); // pixels
 
   class Body {
@@ -116,6 +117,7 @@ steplap.Scene = (() => {
           body.extend(own, pose(body.name));
           for (const corner of [own.low, own.high]) box.take(near.nearest(corner));
         }
+      this.takeOpening(box, Math.max(...still.span));
       // Room for springs that carry from below.
       const isBelow = (s) => s.type === 'spring' && this.isTied(s) && this.isHeld(s.at[1].body) && Math.abs(s.direction[1]) > 0.7;
       const isCarried = this.elements.some((e) => e.shapes.some((s) => isBelow(s) && !this.wheelsOf(s.at[1].body).length));
@@ -123,11 +125,19 @@ steplap.Scene = (() => {
       this.trails = null;
       return box;
     }
-    // Room for symbols at the left and right, and above and below: a drive's arrow stands before all that it drives.
+    // Makes room for the machine at the instant at which the page opens.
+    takeOpening(box, size) {
+      if (this.opening === undefined) return;
+      const own = new Box(), pose = this.look(this.opening, this.seenFrom, this.magnification);
+      for (const body of this.bodies.values()) body.extend(own, pose(body.name));
+      if (!own.isEmpty && Math.max(...box.joined(own).span) < most * size) box.take(own.low).take(own.high);
+    }
+    // Room for symbols at the left and right, and above and below: the arrow of a load stands before all that it moves.
     margins(width) {
-      const drives = this.elements.flatMap((e) => e.shapes.filter((s) => s.type === 'arrow' && s.style !== 'load')),
-            isAlong = (i) => drives.some((s) => Math.abs((s.direction || [1, 0])[i]) > 0.3);
-      return [0, 1].map((i) => (isAlong(i) ? Math.max(margin, 5.5 * symbolSize(width)) : margin));
+      const drives = this.elements.flatMap((e) => e.shapes.filter((s) => s.type === 'arrow').map((s) => s.direction || [0, 0]));
+      const loads = this.causes().filter(({ shape }) => shape && shape.type === 'arrow');
+      const ways = [...drives, ...loads.map((load) => (load.along ? unit(load.along(load.peakAt)) : load.shape.direction))];
+      return [0, 1].map((i) => (ways.some((d) => Math.abs(d[i]) > 0.3) ? Math.max(margin, 5.5 * symbolSize(width)) : margin));
     }
     // Room for a box of `span` about `middle` on a picture of the given size in pixels.
     fit(middle, span, width, tallest, margins = this.margins(width)) {

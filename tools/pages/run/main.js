@@ -2,9 +2,9 @@
 // follows once the browser has painted it.
 (() => {
   const make = steplap.make, runs = steplap.data.runs, at = (id) => document.getElementById(id);
-  const end = Math.max(...runs.map((r) => r.end)), isOne = runs.length === 1, horizon = steplap.overview.horizonOf(runs);
+  const end = Math.max(...runs.map((r) => r.end)), isOne = runs.length === 1;
   const worst = steplap.overview.worstOf(runs);
-  let t = 0, last = null, plots = null, isUntouched = true;
+  let t = 0, last = null, plots = null, isUntouched = true, horizon = steplap.overview.horizonOf(runs);
   const scenes = [], insets = [];
 
   // Colours of paper while `action` runs: files that are saved are black on white whatever the screen is.
@@ -328,10 +328,13 @@
   at('overview').classList.toggle('alone', at('near').hidden);
   fit();
   const opening = steplap.overview.openingOf(scenes);
-  if (opening > timeline.end) {
-    setHorizon(end);
-    timeline.build();
+  for (const scene of scenes) scene.opening = opening;
+  if (opening > horizon) {
+    horizon = Math.min(end, steplap.overview.nice(opening));
+    setHorizon(horizon);
+    at('whole-time').hidden = horizon === end;
   }
+  fit();
   show(opening);
   steplap.page = { scenes, view, show: go, time: () => t, timeline, shown: performance.now() };
   // After the browser has painted: a frame to paint in, and what comes after it.

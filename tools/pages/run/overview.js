@@ -49,10 +49,12 @@ steplap.overview = (() => {
     if (isJudged !== false && verdict in words) return { word: words[verdict], name: verdict };
     return { word: isJudged !== false && verdict ? String(verdict).toUpperCase() : 'NO CRITERIA', name: 'none' };
   }
+  // Results of earlier versions do not say which shares are those of criteria: these have a limit.
+  const isJudged = (u) => u.is_judged ?? (u.limit !== null && u.limit !== undefined);
   // The worst instant of the run that is nearest to its limits, or furthest beyond; null if none has one.
   function worstOf(runs) {
     const shareOf = (o) => {
-      const u = o.utilisations.find((each) => each.is_judged) || o.utilisations[0];
+      const u = o.utilisations.find(isJudged) || o.utilisations[0];
       return u ? u.share ?? Infinity : 0;
     };
     const known = runs.map(of).filter((o) => o.worst_instant !== null && o.worst_instant !== undefined);
@@ -106,10 +108,10 @@ steplap.overview = (() => {
   }
   function instantOf(scene) {
     const { run } = scene, { story, reason, worst_instant: worst, utilisations } = of(run);
-    const isJudged = utilisations.some((u) => u.is_judged),
+    const hasCriteria = utilisations.some(isJudged),
           slid = story.find((e) => e.what === 'slips' && e.who.length === 1 && reason.startsWith(`Joint '${e.who[0]}' slips`));
     if (slid) return endOf(run, slid);
-    if (isJudged && worst !== null) return worst;
+    if (hasCriteria && worst !== null) return worst;
     const told = leaders.map((what) => story.find((e) => e.what === what)).find(Boolean) || story[0],
           t = told ? instantOfEntry(run, told, story) : 0;
     const furthest = isSeenToMove(scene, t) ? t : furthestInstant(scene);
@@ -137,5 +139,5 @@ steplap.overview = (() => {
     const last = nice(1.08 * Math.max(...events, ...runs.map((run) => of(run).worst_instant ?? 0)));
     return last < 0.6 * end ? last : end;
   }
-  return { of, badgeOf, worstOf, openingOf, horizonOf };
+  return { of, isJudged, badgeOf, worstOf, openingOf, nice, horizonOf };
 })();
