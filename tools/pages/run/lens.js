@@ -62,6 +62,7 @@
         text: piece('text', { class: 'lens-text' })
       });
       this.lens.text.textContent = `slide up to ${q(decided.amount)}${decided.limit ? `, limit ${q(decided.limit)}` : ''}`;
+      this.lens.width = 6.9 * this.lens.text.textContent.length; // pixels
       this.legendLayer.append(this.lens.group);
       this.updaters.push((t, pose) => this.showLens(t, pose));
     },
@@ -69,15 +70,16 @@
     placeLens() {
       const { lens } = this, r = radiusFor(this.width), rest = (name) => this.reference(name);
       if (!lens) return;
-      const boxes = [...this.bodies.values()].map((body) => this.boxOnScreen(body, rest)),
+      const boxes = [...this.bodies.values()].map((body) => this.boxOnScreen(body, rest)), reach = Math.max(r, 0.5 * lens.width);
+      const boxAt = ([x, y]) => [x - reach, y - r, x + reach, y + r + textHeight],
             low = this.height - this.footHeight() - textHeight - r - 2;
-      const covered = ([x, y]) => boxes.reduce((sum, [x0, y0, x1, y1]) => sum +
-          Math.max(0, Math.min(x1, x + r) - Math.max(x0, x - r)) * Math.max(0, Math.min(y1, y + r + textHeight) - Math.max(y0, y - r)),
-        0);
-      const corners = [r + air, low].flatMap((y) => [r + air, this.width - r - air].map((x) => [x, y])),
-            best = corners.reduce((a, b) => (covered(b) < covered(a) ? b : a));
+      const shared = (a, b) =>
+        Math.max(0, Math.min(a[2], b[2]) - Math.max(a[0], b[0])) * Math.max(0, Math.min(a[3], b[3]) - Math.max(a[1], b[1]));
+      const covered = (at) => boxes.reduce((sum, box) => sum + shared(box, boxAt(at)), 0);
+      const corners = [r + air, low].flatMap((y) => [reach + air, this.width - reach - air].map((x) => [x, y]));
+      const best = corners.reduce((a, b) => (covered(b) < covered(a) ? b : a));
       const isNeeded = lens.amount * this.fittedScale < seen && covered(best) < room * 4 * r * r && this.height > 4 * r;
-      Object.assign(lens, { at: best, r, box: isNeeded ? [best[0] - r, best[1] - r, best[0] + r, best[1] + r + textHeight] : null });
+      Object.assign(lens, { at: best, r, box: isNeeded ? boxAt(best) : null });
       lens.group.style.display = isNeeded ? '' : 'none';
     },
     lensBoxes() { return this.lens && this.lens.box ? [this.lens.box] : []; },
@@ -112,9 +114,8 @@
         this.put(name, name.textContent, middle[0], middle[1] + 4, 'middle');
         name.setAttribute('transform', `rotate(${(Math.abs(tangent[0]) < 1e-9 ? 90 : slope).toFixed(1)} ${text(middle)})`);
       });
-      const end = this.toScreen(this.placed(lens.moving, pose)), reach = 3.4 * lens.text.textContent.length;
-      this.put(lens.text, lens.text.textContent, Math.min(Math.max(at[0], reach + 4), this.width - reach - 4), at[1] + r + textHeight - 3,
-        'middle');
+      this.put(lens.text, lens.text.textContent, at[0], at[1] + r + textHeight - 3, 'middle');
+      const end = this.toScreen(this.placed(lens.moving, pose));
       lens.leader.setAttribute('d', `M${text(add(at, scaled(unit(minus(end, at)), r)))}L${text(end)}`);
     },
   });

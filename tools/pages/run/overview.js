@@ -112,9 +112,9 @@ steplap.overview = (() => {
           slid = story.find((e) => e.what === 'slips' && e.who.length === 1 && reason.startsWith(`Joint '${e.who[0]}' slips`));
     if (slid) return endOf(run, slid);
     if (hasCriteria && worst !== null) return worst;
-    const told = leaders.map((what) => story.find((e) => e.what === what)).find(Boolean) || story[0],
-          t = told ? instantOfEntry(run, told, story) : 0;
-    const furthest = isSeenToMove(scene, t) ? t : furthestInstant(scene);
+    const told = leaders.map((what) => story.find((e) => e.what === what)).find(Boolean) || story[0];
+    if (!told) return furthestInstant(scene);
+    const t = instantOfEntry(run, told, story), furthest = isSeenToMove(scene, t) ? t : furthestInstant(scene);
     return isSeenToMove(scene, furthest) ? furthest : t;
   }
   // Of several runs that of the run that is nearest to its limits. Where the motion about it is not written (machine.js), the nearest
