@@ -280,10 +280,10 @@ class GalleryTest(base.Page):
         length = """const s = steplap.page.scenes[0], t = arguments[0]; steplap.page.show(t);
             const [x0, y0, x1, y1] = s.lens.group.querySelector('.lens-arrow').getAttribute('d').match(/-?[0-9.]+/g).slice(0, 4).map(Number);
             return [Math.hypot(x1 - x0, y1 - y0) / s.lens.r, steplap.data.runs[0].channel('feet.slide').at(t)]"""
-        drawn = {t: self.run_js(length, t) for t in (0.18, 0.322)}
+        drawn = {t: self.run_js(length, t) for t in (0.2, 0.322)}
         for share, slide in drawn.values():
             self.assertAlmostEqual(share, 0.6 * abs(slide) / 2.203e-3, delta=0.01)  # half a pixel of 62
-        self.assertGreater(drawn[0.322][0], 1.1 * drawn[0.18][0])  # it grows
+        self.assertGreater(drawn[0.322][0], 1.1 * drawn[0.2][0])  # it grows
         self.open("gallery_stacked_blocks.html")
         self.assertEqual(len([e for e in self.all(".lens") if e.is_displayed()]), 0)
 
