@@ -3,9 +3,10 @@
 (() => {
   const make = steplap.make, { add, minus, scaled, dot, length, unit, turn, apply, seenIn, relative } = steplap.geometry;
   const seen = 10; // pixels of a slide that needs no lens
+  const least = 1e-5; // of the machine's size: a slide that is smaller is how contacts give way
   const shown = 0.6; // of the lens's radius: the largest slide
   const room = 0.35; // of the lens: what of it may hide bodies
-  const air = 8, textHeight = 16; // pixels
+  const air = 8, textHeight = 16, fieldRoom = 110; // pixels; the last for an arrow of gravity (loads.js)
   const radiusFor = (width) => Math.min(62, Math.max(38, 0.11 * width)); // pixels
 
   // The slide that decided: of the first criterion, if it limits one, otherwise the largest that the story tells.
@@ -38,7 +39,7 @@
 
   Object.assign(steplap.Scene.prototype, {
     buildLens() {
-      const decided = decidedBy(this.run), contact = decided && decided.amount > 0 ? contactOf(this, decided.name) : null;
+      const decided = decidedBy(this.run), contact = decided && decided.amount > least * this.size ? contactOf(this, decided.name) : null;
       if (!contact) return;
       const q = (v) => steplap.data.quantity(v, 'm', 3), names = [contact.carrier, contact.moving.body];
       this.lens = {...decided, ...contact, box: null, group: make('g', { class: 'lens', 'data-lens': decided.name }) };
@@ -71,6 +72,7 @@
       const { lens } = this, r = radiusFor(this.width), rest = (name) => this.reference(name);
       if (!lens) return;
       const boxes = [...this.bodies.values()].map((body) => this.boxOnScreen(body, rest)), reach = Math.max(r, 0.5 * lens.width);
+      if (this.causes().some((load) => load.isField)) boxes.push([0, 0, fieldRoom, fieldRoom]);
       const boxAt = ([x, y]) => [x - reach, y - r, x + reach, y + r + textHeight],
             low = this.height - this.footHeight() - textHeight - r - 2;
       const shared = (a, b) =>
