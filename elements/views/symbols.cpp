@@ -203,7 +203,7 @@ void cam(Sketch& s) {
   const auto a = s.place("a"), b = s.place("b"), turning = s.place("cam");
   if (!a || !b) return;
   if (turning) s.polygon(*turning, outline_of_cam(s, *a, *b, *turning));
-  s.draw({"arrow", "motor", "force", {*a, *b}, s.direction("axis"), {}});
+  s.draw({"arrow", "drive", "force", {*a, *b}, s.direction("axis"), {}});
 }
 void freewheel(Sketch& s) { s.draw({"arc", "brake", "couple", s.places(), {}, {}}); }
 // Draws the pitch circles of two wheels on separate axles. Other gears may be whole gear boxes.

@@ -16,8 +16,9 @@ namespace {
 
 const char* const k_ground_name = "ground";
 
-bool is_marker_of_ground(const Node& marker) {
-  const Node* const body = marker.find("body");
+// Of a marker or of a table about a body, such as a look.
+bool is_on_ground(const Node& entry) {
+  const Node* const body = entry.find("body");
   return body && body->text() == k_ground_name;
 }
 
@@ -172,7 +173,7 @@ void PartEntries::put_body(Node& body, const Node& root, const PartPlacement& pa
 }
 
 void PartEntries::put_marker(Node& marker, const PartPlacement& part, bool is_whole) const {
-  const bool is_grounded = is_marker_of_ground(marker);
+  const bool is_grounded = is_on_ground(marker);
   if (Node* const body = marker.find("body")) prefix_texts(*body, part.prefix);
   const PartFrame& frame = part.frame;
   if (!frame.is_placed()) return;
@@ -209,13 +210,28 @@ void PartEntries::put_fields(Node& entry, const KindFacts& facts, const PartPlac
   const std::string subject = entry_name(entry);
   for (Node& child : entry.children)
     if (const Field* const field = facts.fields->find(child.key)) put_field(child, *field, facts, is_in_ground, subject, part);
-  if (!is_whole || !part.frame.is_placed()) return;
+  if (!part.frame.is_placed()) return;
+  if (is_on_ground(entry)) put_on_ground(entry, facts, part, is_whole);
+  if (!is_whole) return;
   for (const Field* field : facts.ground_markers) {
     if (entry.find(field->name)) continue;
     Node ground = text_at(field->name, entry, k_ground_name);
     put_reference(ground, part);
     entry.children.push_back(std::move(ground));
   }
+}
+
+// Moves what a table draws on the ground, such as a road, with its part.
+void PartEntries::put_on_ground(Node& entry, const KindFacts& facts, const PartPlacement& part, bool is_whole) {
+  const Field* const place = facts.fields->find("at");
+  if (!place || place->type != FieldType::vec2) return;
+  if (part.frame.is_turned())
+    problems_.push_back({entry.where(), "'" + entry_name(entry) +
+                                            "' lies level on the ground and cannot turn with its part, which has an " +
+                                            "'angle': write it into the model"});
+  Node* const at = entry.find("at");
+  if (at) part.frame.place_points(*at);
+  else if (is_whole) entry.children.push_back(part.frame.origin_node("at", entry));
 }
 
 void PartEntries::put_field(Node& child, const Field& field, const KindFacts& facts, bool is_in_ground, const std::string& subject,

@@ -51,6 +51,7 @@ private:
   void put_marker(Node& marker, const PartPlacement& part, bool is_whole = true) const;
   void put_reference(Node& node, const PartPlacement& part) const;
   void put_fields(Node& entry, const KindFacts& facts, const PartPlacement& part, bool is_whole);
+  void put_on_ground(Node& entry, const KindFacts& facts, const PartPlacement& part, bool is_whole);
   void put_field(Node& child, const Field& field, const KindFacts& facts, bool is_in_ground, const std::string& subject,
                  const PartPlacement& part);
   void put_presentation(const std::string& array, Node& entry, const PartPlacement& part, bool is_whole) const;

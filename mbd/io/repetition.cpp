@@ -151,7 +151,7 @@ std::size_t text_size(const Node& node) {
 } // namespace
 
 const std::vector<std::string>& repeated_arrays() {
-  static const std::vector<std::string> names = {"part", "body", "marker", "signal", "element", "action"};
+  static const std::vector<std::string> names = {"part", "body", "marker", "signal", "element", "action", "look"};
   return names;
 }
 

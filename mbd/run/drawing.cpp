@@ -59,7 +59,7 @@ public:
   Json json() {
     Json elements = Json::array();
     for (const ElementEntry& entry : model_.elements) elements.push_back(element_json(entry));
-    Json json = object_with_room(9);
+    Json json = object_with_room(10);
     append(json, "bodies") = bodies_json(); // after the elements, which define geometry of bodies
     append(json, "elements") = std::move(elements);
     append(json, "ground") = ground_json();
@@ -69,6 +69,7 @@ public:
     append(json, "cores") = cores_json();
     append(json, "looks") = looks_json();
     append(json, "seen_from") = model_.output.seen_from;
+    append(json, "gravity") = point_json(model_.header.gravity);
     return json;
   }
 

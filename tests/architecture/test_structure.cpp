@@ -1,5 +1,5 @@
 // Compares docs/design/structure.md with the sources: each `path` exists, each `function()` occurs in a file named in the same line, and
-// folders are about as large as stated.
+// folders are about as large as stated. Lines of the pages' scripts and styles are no longer than those of C++.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -121,4 +121,24 @@ TEST_CASE("folders are about as large as docs/design/structure.md says") {
     CHECK_MESSAGE((share > 0.8 && share < 1.25), quoted.front() << " has " << lines_in(k_source / quoted.front()) << " lines");
   }
   CHECK(folders > 20);
+}
+
+// clang-format leaves long texts as they are, and styles alone.
+TEST_CASE("no line of the pages' scripts and styles has more than 140 characters") {
+  constexpr long k_longest = 140; // ColumnLimit of .clang-format
+  int files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(k_source / "tools/pages")) {
+    const fs::path& path = entry.path();
+    const bool is_script = path.extension() == ".js" || path.extension() == ".css";
+    if (!is_script || path.parent_path().filename() == "plotly") continue; // a library as it is published
+    ++files;
+    std::ifstream file(path);
+    long number = 0;
+    for (std::string line; std::getline(file, line);) {
+      ++number;
+      const auto is_first_byte = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }; // of a character in UTF-8
+      CHECK_MESSAGE(std::count_if(line.begin(), line.end(), is_first_byte) <= k_longest, path.filename().string() << ":" << number);
+    }
+  }
+  CHECK(files > 50);
 }

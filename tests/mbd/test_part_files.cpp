@@ -1,5 +1,6 @@
 // [[part]] and `repeat`: models with parts run like the same models written out, to the bit; what cannot be is refused with file,
 // line, column and remedy.
+#include "mbd/io/look.h"
 #include "mbd/io/parts.h"
 #include "mbd/io/reader.h"
 #include "mbd/io/toml_writer.h"
@@ -534,4 +535,27 @@ TEST_CASE("each field of every kind is known to turn with a part or not to") {
   for (const TableKind* kind : transformer_catalog().tables)
     if (!can_stand_in_part(*kind)) alone += kind->name + " ";
   CHECK(alone == "case clamp recorder uncertain ");
+}
+
+TEST_CASE("a road of a part lies where the part stands, and wheels stay on their body") {
+  const Folder folder;
+  folder.write(
+      "cart.toml",
+      "[[body]]\nname = \"axle\"\nmass = 1\ninertia = 1\n"
+      "[[look]]\nname = \"wheel {i+1}\"\nbody = \"axle\"\ndraw = \"wheel\"\nradius = 0.4\nat = [\"= i*'0.5 m'\", 0.25]\nrepeat = 3\n"
+      "[[look]]\nname = \"road\"\nbody = \"ground\"\ndraw = \"road\"\nat = [0.0, -0.5]\n"
+      "[[look]]\nname = \"rail\"\nbody = \"ground\"\ndraw = \"rail\"\n");
+  const std::string part = "[[part]]\nname = \"cart\"\nfile = \"cart.toml\"\nx = 4.0\ny = 2.0\n";
+  folder.write("placed.toml", part);
+  const Model model = read_model(folder / "placed.toml", transformer_catalog());
+  std::map<std::string, Vec2> places;
+  for (const TableEntry& entry : model.tables) places[entry.table->name] = places_of(static_cast<const Look&>(*entry.table)).front();
+  REQUIRE(places.size() == 5);
+  // Halves and quarters, so all sums are exact.
+  for (int i = 0; i < 3; ++i) CHECK(places["cart.wheel " + std::to_string(i + 1)] == Vec2(0.5 * i, 0.25));
+  CHECK(places["cart.road"] == Vec2(4.0, 1.5));
+  CHECK(places["cart.rail"] == Vec2(4.0, 2.0)); // no 'at': the part's origin
+
+  folder.write("turned.toml", part + "angle = 0.1\n");
+  CHECK(has(refusal_of(folder / "turned.toml"), "'cart.road' lies level on the ground and cannot turn with its part"));
 }

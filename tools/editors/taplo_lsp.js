@@ -3,7 +3,8 @@
 const fs = require("fs"), path = require("path"), url = require("url");
 const { TaploLsp } = require("@taplo/lsp");
 function findConfigFile(from) {
-  for (const name of [".taplo.toml", "taplo.toml"]) if (fs.existsSync(path.join(from, name))) return path.join(from, name);
+  for (const name of [".taplo.toml", "taplo.toml"])
+    if (fs.existsSync(path.join(from, name))) return path.join(from, name);
 }
 const environment = {
   cwd: () => process.cwd(),

@@ -88,7 +88,7 @@ void refuse_equal_names(const std::vector<SharedStudyModel>& models, const Study
     for (std::size_t j = 0; j < i; ++j)
       if (models[i]->name == models[j]->name)
         problems.push_back({models[i]->load ? models[i]->load->where : study.where,
-                            "two load cases are called '" + models[i]->name + "': their results could not be told apart"});
+                            "two load cases are called '" + models[i]->name + "': their results could not be distinguished"});
 }
 
 // Adds the responses of all load cases of the model, and their models. Returns the least of them as a formula.

@@ -52,6 +52,18 @@ ARROWS = """const scene = steplap.page.scenes[arguments[0]], s = scene.svg.getBo
 # Boxes of the values that are written beside forces, of the names of bodies and of what the picture marks as having happened.
 WRITTEN = """return [...steplap.page.scenes[0].svg.querySelectorAll('.value-text, .name-text, .state-text')].map((e) => [e, e.getBoundingClientRect()])
     .filter(([e, r]) => r.width > 0).map(([e, r]) => [e.dataset.valueOf || '', e.textContent, r.left, r.top, r.right, r.bottom])"""
+# Of the first scene: texts that lie on another, and texts that lie on the centre of another body than their own.
+COVERED = """const s = steplap.page.scenes[0], pose = s.look(steplap.page.time(), s.seenFrom, s.magnification), m = s.svg.getScreenCTM();
+    const texts = [...s.svg.querySelectorAll('.name-text, .state-text, .load-text, .value-text')].map((e) => [e, e.getBoundingClientRect()]).filter(([e, r]) => e.textContent && r.width > 0);
+    const meet = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom, found = [];
+    texts.forEach(([e, r], i) => {
+      for (const [other, o] of texts.slice(0, i)) if (meet(r, o)) found.push(`${e.textContent} on ${other.textContent}`);
+      for (const body of s.bodies.values()) {
+        const [x, y] = s.toScreen(pose(body.name)), p = { x: m.a * x + m.e, y: m.d * y + m.f }, own = e.closest('[data-name-of]');
+        if (!body.isLookAlone && own?.dataset.nameOf !== body.name && p.x > r.left && p.x < r.right && p.y > r.top && p.y < r.bottom) found.push(`${e.textContent} over ${body.name}`);
+      }
+    });
+    return found"""
 # What the picture marks as having happened: element, sign, words.
 HAPPENED = """return [...document.querySelectorAll('.happening')].filter((e) => e.style.display !== 'none').map((e) => [e.dataset.happened, e.querySelector('[data-sign]').dataset.sign, e.querySelector('text').textContent])"""
 
@@ -256,9 +268,69 @@ class GalleryTest(base.Page):
         self.assertEqual(at(0.15), ("road braking 0.4 g", True))  # half of the rise from 0.1 s to 0.2 s
         self.assertEqual(at(0.05), ("road braking, 0.8 g at most", False))
         self.assertEqual(len(self.all("[data-load]")), 1)  # the road strips stand still: nothing loads them
-        # The drive of a truck that tips does not act at its centre of gravity: its size is not known, and none is said.
+        # The brake of a truck that tips acts at its front wheels: half a second after its start half of 0.6 g, as the rise of 1 s has it.
         self.open("gallery_forklift.html")
-        self.assertEqual((len(self.all("[data-load]")), len(self.all(".drive"))), (0, 1))
+        self.run_js("steplap.page.show(0.7)")
+        self.assertEqual(self.find("[data-load=brake]").text.replace("\u00a0", " "), "braking 0.3 g")
+
+    def test_a_lens_shows_a_slide_that_is_too_small_to_be_seen(self):
+        """Of 2.2 mm the lens draws 0.6 of its radius, of half the slide half as much. A slide of 145 mm needs no lens."""
+        self.open("gallery_three_limb.html")
+        self.assertEqual(self.find(".lens-text").text.replace("\u00a0", " "), "slide up to 2.2 mm, limit 3 mm")
+        length = """const s = steplap.page.scenes[0], t = arguments[0]; steplap.page.show(t);
+            const [x0, y0, x1, y1] = s.lens.group.querySelector('.lens-arrow').getAttribute('d').match(/-?[0-9.]+/g).slice(0, 4).map(Number);
+            return [Math.hypot(x1 - x0, y1 - y0) / s.lens.r, steplap.data.runs[0].channel('feet.slide').at(t)]"""
+        drawn = {t: self.run_js(length, t) for t in (0.2, 0.322)}
+        for share, slide in drawn.values():
+            self.assertAlmostEqual(share, 0.6 * abs(slide) / 2.203e-3, delta=0.01)  # half a pixel of 62
+        self.assertGreater(drawn[0.322][0], 1.1 * drawn[0.2][0])  # it grows
+        self.open("gallery_stacked_blocks.html")
+        self.assertEqual(len([e for e in self.all(".lens") if e.is_displayed()]), 0)
+
+    def test_no_label_lies_on_another_or_hides_the_middle_of_a_body(self):
+        names = ["no_interference", "three_limb", "five_limb_humping", "rail_wagon", "rail_wagon_humping", "single_phase_two_limb_bump", "forklift", "crane_arm", "stacked_blocks", "hoist",
+                 "tank_with_lid", "braking_car"]
+        models = [model for model in self.models if stem(model) in names]
+        self.assertEqual(len(models), 12)
+        self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.clearDeviceMetricsOverride", {})
+        for width in (1200, PHONE[0]):
+            self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False})
+            for model in models:
+                with self.subTest(model=stem(model), width=width):
+                    self.show_model(model)
+                    self.assertEqual(self.run_js(COVERED), [])
+
+    def test_every_load_is_told_in_a_sentence_with_a_curve_and_an_arrow(self):
+        """Sizes and times are those of the model files. Samples are at most 5 ms apart, and 2 % of a load is none: times are known to that."""
+        # The carrier of loads of layouts; nothing but gravity acts on a wall.
+        wanted = {"forklift": "Braking: truck is braked with 0.6 g", "three_limb_humping": "Rail humping: trailer is braked with 2 g", "tank_with_lid": "Bump: wagon rises by 60 mm",
+                  "balanced_drum": "Turning: drum turns at 60 rad/s.", "jamming_slide": "Push acts on slide with 100 N.", "drawbar_train": "Ahead: lorry moves at",
+                  "rail_wagon_humping": "Wagon and 6 more move at 1.94 m/s at the start.", "brick_wall": "Gravity acts, and no other load."}
+        for model in self.models:
+            with self.subTest(model=stem(model)):
+                self.show_model(model)
+                told = self.run_js("return [...document.querySelectorAll('.cause:not(.more) p')].map((p) => p.textContent.replaceAll('\u00a0', ' '))")
+                curves, arrows = len(self.all(".cause-curve")), len(self.all(".load-text"))
+                self.assertTrue(told, stem(model))
+                self.assertEqual(curves, len(told))
+                self.assertGreater(arrows, 0, told)
+                self.assertTrue(told[0].startswith(wanted.get(stem(model), "")), told)
+
+    def test_the_page_opens_where_one_sees_what_happened(self):
+        """The angle of the brick and the slide of the blocks are extremes of the runs; the truck comes down on its forks at 2.95 s."""
+        opened = lambda name, channel: (self.open(f"gallery_{name}.html"), self.run_js("return steplap.page.time()"), self.run_js("const e = steplap.data.runs[0].summary.extremes[arguments[0]]; return [e.t_min, e.t_max, e.min, e.max]", channel))[1:]
+        t, (_, _, low, high) = opened("forklift", "truck.theta")
+        self.assertTrue(2.5 < t < 2.96, t)
+        lean = self.run_js("return Math.abs(steplap.data.runs[0].channel('truck.theta').at(steplap.page.time()))")
+        self.assertGreater(lean, 0.3)  # 17 degrees: nobody takes it for upright
+        self.assertTrue(self.find("[data-ghost-of=truck]").is_displayed())
+        t, _ = opened("stacked_blocks", "top block.x")
+        self.assertAlmostEqual(t, 1.03, delta=0.02)  # where the top block has come to rest
+        self.assertTrue(self.find("[data-ghost-of='top block']").is_displayed())
+        # True motion is drawn as it is: 145.5 mm.
+        shift, scale = self.run_js("const s = steplap.page.scenes[0], pose = s.look(steplap.page.time(), s.seenFrom, s.magnification); return [s.shiftOf(s.body('top block'), pose), s.factorOf('top block', s.seenFrom, s.magnification)]")
+        self.assertAlmostEqual(shift, 0.1455, delta=1e-3)
+        self.assertEqual(scale, 1)
 
     def test_the_picture_keeps_the_machine_when_a_part_flies_off(self):
         with open(os.path.join(WORK.name, "thrown.toml"), "w", encoding="utf-8") as file:
@@ -274,8 +346,8 @@ class GalleryTest(base.Page):
         self.open("gallery_pile.html")
         last = self.run_js("return Math.max(...steplap.data.runs[0].events.filter((e) => steplap.signs.has(e[4])).map((e) => e[0]))")
         shown = lambda: float(self.find("#time").get_attribute("max"))
-        self.assertGreater(shown(), last)
-        self.assertLess(shown(), 2 * last)
+        self.assertLess(last, 2.5)
+        self.assertEqual(shown(), 10)  # the page opens at the first state that is written after the fall
         self.find("#whole-time").click()
         self.assertEqual(shown(), self.run_js("return steplap.data.runs[0].end"))
         self.open("gallery_three_limb.html")  # events until 0.79 s of 1.2 s
@@ -303,23 +375,23 @@ class GalleryTest(base.Page):
     def test_between_states_far_apart_the_picture_says_that_it_is_not_the_motion(self):
         note = lambda t: (self.run_js("steplap.page.show(arguments[0])", t), self.find(".seen-text").text)[1]
         self.open("gallery_pile.html")  # states each 10 s, all falls within three
-        self.assertEqual(self.run_js("return steplap.page.time()"), 0)
+        self.assertEqual(self.run_js("return steplap.page.time()"), 10)  # the first state that is written after the fall
         self.assertIn("not the motion", note(0.25))
         self.assertEqual(note(10), "")
         self.open("gallery_no_interference.html")
         for t in (0.0503, 0.1218, 0.3):
             self.assertNotIn("not the motion", note(t))
 
-    def test_without_limits_the_page_opens_at_the_first_event_told_of(self):
+    def test_with_limits_the_page_opens_where_one_is_nearest_or_where_a_joint_has_slid(self):
         found = 0
         for model in self.models:
             self.show_model(model)
-            worst, told, is_guessed, t = self.run_js("""const runs = steplap.data.runs, story = steplap.overview.of(runs[0]).story.map((e) => e.from), worst = steplap.overview.worstOf(runs);
-                const first = story.length ? Math.min(...story) : 0; return [worst, first, steplap.page.scenes[0].isGuessed(worst ?? first), steplap.page.time()]""")
-            if not is_guessed:
-                self.assertAlmostEqual(t, told if worst is None else worst, delta=1e-12, msg=model)
-            found += worst is None and told > 0
-        self.assertGreater(found, 0)
+            worst, reason, is_judged, t = self.run_js("""const o = steplap.overview.of(steplap.data.runs[0]);
+                return [o.worst_instant, o.reason, o.utilisations.some((u) => u.is_judged), steplap.page.time()]""")
+            if is_judged and not reason.startswith("Joint"):
+                self.assertAlmostEqual(t, worst, delta=1e-12, msg=model)
+                found += 1
+        self.assertGreater(found, 10)
 
     def test_the_bar_of_friction_that_slips_is_no_criterion(self):
         self.open("gallery_no_interference.html")

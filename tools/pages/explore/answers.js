@@ -2,12 +2,19 @@
 // are never computed, the last ones always are.
 steplap.Answers = class Answers {
   constructor(onAnswer, onSilence) {
-    Object.assign(this, { onAnswer, onSilence, page: Math.random().toString(36).slice(2), last: 0, shown: 0, wanted: null, underway: new Set(), sentAt: 0 });
+    Object.assign(this,
+      { onAnswer, onSilence, page: Math.random().toString(36).slice(2), last: 0, shown: 0, wanted: null, underway: new Set(), sentAt: 0 });
   }
   // ms; after this time the newer values are sent although a run is in progress, which the server then aborts.
   static get patience() { return 150; }
   async post(path, body) {
-    const reply = await fetch(path, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(body), credentials: 'omit', redirect: 'error' });
+    const reply = await fetch(path, {
+      method: 'POST',
+      headers: { 'Content-Type': 'application/json' },
+      body: JSON.stringify(body),
+      credentials: 'omit',
+      redirect: 'error'
+    });
     if (!reply.ok) throw new Error(await reply.text());
     return reply.json();
   }
@@ -34,15 +41,19 @@ steplap.Answers = class Answers {
     this.wanted = null;
     this.underway.add(asked);
     this.sentAt = performance.now();
-    this.post('run', { ...asked.request, page: this.page }).then((answer) => {
-      this.underway.delete(asked);
-      if (!answer.is_superseded && asked.number > this.shown) {
-        this.shown = asked.number;
-        this.onAnswer(answer, asked);
-      }
-    }, (error) => {
-      this.underway.delete(asked);
-      this.onSilence(error);
-    }).finally(() => this.next());
+    this.post('run', {...asked.request, page: this.page })
+      .then(
+        (answer) => {
+          this.underway.delete(asked);
+          if (!answer.is_superseded && asked.number > this.shown) {
+            this.shown = asked.number;
+            this.onAnswer(answer, asked);
+          }
+        },
+        (error) => {
+          this.underway.delete(asked);
+          this.onSilence(error);
+        })
+      .finally(() => this.next());
   }
 };

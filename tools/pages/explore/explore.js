@@ -10,12 +10,17 @@
   const troubles = { file: [], run: [], server: [] };
   function showTroubles() {
     const place = (e) => [e.file, e.line || '', e.line && e.column ? e.column : ''].filter((v) => v !== '').join(':');
-    const lines = [...troubles.server, ...troubles.file, ...troubles.run].map((e) => make('p', {}, make('span', { class: 'place' }, place(e)), place(e) ? ': ' : '', e.message));
+    const lines = [...troubles.server, ...troubles.file, ...troubles.run].map(
+      (e) => make('p', {}, make('span', { class: 'place' }, place(e)), place(e) ? ': ' : '', e.message));
     at('troubles').replaceChildren(...lines);
     at('troubles').hidden = !lines.length;
     at('overview').classList.toggle('stale', troubles.run.length > 0 || troubles.file.length > 0);
-    if (troubles.file.length) at('troubles').append(make('p', { class: 'note' }, 'The file is read again when it is saved. What is shown below is the last state without errors.'));
-    else if (troubles.run.length) at('troubles').append(make('p', { class: 'note' }, 'There is no run with these values. What is shown below is the last one.'));
+    if (troubles.file.length)
+      at('troubles')
+        .append(
+          make('p', { class: 'note' }, 'The file is read again when it is saved. What is shown below is the last state without errors.'));
+    else if (troubles.run.length)
+      at('troubles').append(make('p', { class: 'note' }, 'There is no run with these values. What is shown below is the last one.'));
   }
 
   // --- asking -----------------------------------------------------------------------------------------------
@@ -37,13 +42,24 @@
   let waiting = null;
   function tellWaiting() {
     clearTimeout(waiting);
-    waiting = setTimeout(() => { if (!answers.isIdle) at('pace').textContent = 'computing …'; }, 300);
+    waiting = setTimeout(() => {
+      if (!answers.isIdle) at('pace').textContent = 'computing …';
+    }, 300);
   }
   function settleLater() {
     clearTimeout(settled);
-    settled = setTimeout(() => { if (answers.isIdle) { answers.want(request(true)); restartMap(); } else settleLater(); }, settleAfter);
+    settled = setTimeout(() => {
+      if (answers.isIdle) {
+        answers.want(request(true));
+        restartMap();
+      } else settleLater();
+    }, settleAfter);
   }
-  const runOf = (answer, name) => { const run = new steplap.data.Run(answer.data.runs[0]); run.name = name; return run; };
+  const runOf = (answer, name) => {
+    const run = new steplap.data.Run(answer.data.runs[0]);
+    run.name = name;
+    return run;
+  };
   function onAnswer(answer, asked) {
     if (asked.request.model !== model) return;
     // A run of a file that was saved meanwhile cannot be compared with the old state: both are requested again, or already are.
@@ -78,24 +94,40 @@
   }
 
   // --- old and new state ------------------------------------------------------------------------------------
-  let versionOfOld = 0, asksOfOld = 0; // version of the file for which the old state was last requested; number of such requests in progress
+  let versionOfOld = 0,
+      asksOfOld = 0; // version of the file for which the old state was last requested; number of such requests in progress
   async function askOld() {
     ++asksOfOld;
-    try { await takeOld(); } finally { --asksOfOld; }
+    try {
+      await takeOld();
+    } finally {
+      --asksOfOld;
+    }
   }
   async function takeOld() {
-    const asked = model, known = version, answer = await answers.post('run', { model, values: {}, is_settled: true, page: `${answers.page} old` });
+    const asked = model, known = version,
+          answer = await answers.post('run', { model, values: {}, is_settled: true, page: `${answers.page} old` });
     if (asked !== model || answer.is_superseded) return;
     versionOfOld = answer.errors ? known : answer.version;
-    if (answer.errors) { troubles.run = answer.errors; showTroubles(); return; }
+    if (answer.errors) {
+      troubles.run = answer.errors;
+      showTroubles();
+      return;
+    }
     if (!isKept) before = runOf(answer, 'old');
-    if (!Object.keys(sliders.changed()).length) { const old = now; now = runOf(answer, 'new'); draw(old, true); }
-    else answers.want(request(true));
+    if (!Object.keys(sliders.changed()).length) {
+      const old = now;
+      now = runOf(answer, 'new');
+      draw(old, true);
+    } else answers.want(request(true));
   }
   function keep() {
     isKept = !isKept;
     at('keep').setAttribute('aria-pressed', String(isKept));
-    if (!isKept) { askOld().catch(onSilence); return; }
+    if (!isKept) {
+      askOld().catch(onSilence);
+      return;
+    }
     before = Object.assign(Object.create(Object.getPrototypeOf(now)), now, { name: 'old' });
     draw(now, true);
   }
@@ -119,7 +151,8 @@
     end = Math.max(...runs.map((r) => r.end));
     if (t > end) t = end;
     const like = scenes[0] && scenes[0].run === before && scenes[1] && scenes[1].width ? scenes[1] : null;
-    for (const [k, run] of runs.entries()) if (!scenes[k] || scenes[k].run !== run) scenes[k] = sceneOf(run, k);
+    for (const [k, run] of runs.entries())
+      if (!scenes[k] || scenes[k].run !== run) scenes[k] = sceneOf(run, k);
     const largestForce = Math.max(...scenes.map((scene) => scene.ownLargestForce()));
     for (const scene of scenes) scene.largestForce = largestForce;
     if (!view) begin();
@@ -131,12 +164,19 @@
     at('worst').hidden = steplap.overview.worstOf(runs) === null;
     // While a slider is dragged the new machine keeps the view of the last one; at rest both are fitted to the picture.
     if (isSettled || !like) fit();
-    else { scenes[1].fitLike(like); buildTimeline(); }
+    else {
+      scenes[1].fitLike(like);
+      buildTimeline();
+    }
     if (isWhole) plots.setRuns(null, now);
     else plots.setRuns(old, now);
     if (isSettled && plots.isOutdated) plots.renew();
     if (isSettled || !like) show(t);
-    else { scenes[1].show(t); timeline.show(t); tellTime(); }
+    else {
+      scenes[1].show(t);
+      timeline.show(t);
+      tellTime();
+    }
     document.body.setAttribute('data-ready', 'true');
   }
   function begin() {
@@ -152,14 +192,16 @@
   }
   function fit() {
     const widths = scenes.map((s) => Math.max(220, s.svg.parentNode.clientWidth));
-    steplap.Scene.fitAll(scenes, at('seen-from').value, steplap.magnificationOf(at('magnification')), widths, Math.max(220, Math.min(0.42 * window.innerHeight, 520)));
+    steplap.Scene.fitAll(scenes, at('seen-from').value, steplap.magnificationOf(at('magnification')), widths,
+      Math.max(220, Math.min(0.42 * window.innerHeight, 520)));
     buildTimeline();
   }
   function buildTimeline() {
     // A new container for the lanes, because the listeners of the old one are removed with it.
     const lanes = make('div', { id: 'lanes' });
     at('lanes').replaceWith(lanes);
-    timeline = new steplap.Timeline([before, now], end, { lanes, axis: at('time-axis'), slider: at('time'), onTime: go });
+    timeline = new steplap.Timeline(
+      [before, now], end, { causes: scenes.map((scene) => scene.causes()), lanes, axis: at('time-axis'), slider: at('time'), onTime: go });
     timeline.build();
   }
 
@@ -174,19 +216,27 @@
     timeline.show(t);
     plots.show(t);
   }
-  function go(time) { isUntouched = false; setPlaying(false); show(time); }
+  function go(time) {
+    isUntouched = false;
+    setPlaying(false);
+    show(time);
+  }
   function setPlaying(wanted) {
     at('play').replaceChildren(steplap.icon(wanted ? 'pause' : 'play'), wanted ? ' Pause' : ' Play');
     at('play').setAttribute('aria-pressed', String(wanted));
     lastFrame = null;
     if (wanted && (t >= end || isUntouched)) show(0);
-    if (wanted) { isUntouched = false; requestAnimationFrame(frame); }
+    if (wanted) {
+      isUntouched = false;
+      requestAnimationFrame(frame);
+    }
   }
   function frame(moment) {
     if (!isPlaying() || !now) return;
     if (lastFrame !== null) show(t + ((moment - lastFrame) / 1000) * Number(at('speed').value));
     lastFrame = moment;
-    if (t >= end) setPlaying(false); else requestAnimationFrame(frame);
+    if (t >= end) setPlaying(false);
+    else requestAnimationFrame(frame);
   }
   function jump(utilisation, run) {
     if (utilisation.at !== null && utilisation.at !== undefined) go(utilisation.at);
@@ -198,7 +248,9 @@
   function listenToKeys() {
     document.addEventListener('keydown', (event) => {
       const isSlider = event.target === at('time');
-      if ((!isSlider && /^(INPUT|SELECT|BUTTON|SUMMARY|TEXTAREA|CANVAS)$/.test(event.target.tagName)) || event.ctrlKey || event.altKey || event.metaKey) return;
+      if ((!isSlider && /^(INPUT|SELECT|BUTTON|SUMMARY|TEXTAREA|CANVAS)$/.test(event.target.tagName)) || event.ctrlKey || event.altKey ||
+        event.metaKey)
+        return;
       const step = (event.shiftKey ? 0.05 : 0.005) * end, moves = { ArrowRight: t + step, ArrowLeft: t - step, Home: 0, End: end };
       if (!now) return;
       if (event.key === ' ') setPlaying(!isPlaying());
@@ -209,19 +261,38 @@
   }
 
   // --- the map --------------------------------------------------------------------------------------------------
-  const map = new steplap.ValueMap({ canvas: at('map'), text: at('map-text'), what: at('map-what'), onChoose: chooseOnMap,
+  const map = new steplap.ValueMap({
+    canvas: at('map'),
+    text: at('map-text'),
+    what: at('map-what'),
+    onChoose: chooseOnMap,
     ask: async (x, y, cells) => {
       const values = sliders.changed();
       if (!answers.isIdle) return { cells: [] }; // runs have priority
-      try { return await answers.post('cells', { model, values, x, y, cells }); } catch { return null; }
-    } });
+      try {
+        return await answers.post('cells', { model, values, x, y, cells });
+      } catch {
+        return null;
+      }
+    }
+  });
   const isMapping = () => at('map-start').getAttribute('aria-pressed') === 'true';
   // A map belongs to the other values: if one of them changes, it starts again.
   let mappedWith = '';
-  const othersThanAxes = () => JSON.stringify([model, version, at('map-x').value, at('map-y').value, Object.entries(sliders.changed()).filter(([path]) => path !== at('map-x').value && path !== at('map-y').value)]);
+  const othersThanAxes = () => JSON.stringify([
+    model, version, at('map-x').value, at('map-y').value,
+    Object.entries(sliders.changed()).filter(([path]) => path !== at('map-x').value && path !== at('map-y').value)
+  ]);
   function axisOf(path) {
     const slider = sliders.given.get(path), row = sliders.rows.get(path);
-    return { path, label: steplap.Sliders.label(slider), unit: slider.unit, least: row ? Number(row.range.min) : slider.least, most: row ? Number(row.range.max) : slider.most, isWhole: slider.is_whole };
+    return {
+      path,
+      label: steplap.Sliders.label(slider),
+      unit: slider.unit,
+      least: row ? Number(row.range.min) : slider.least,
+      most: row ? Number(row.range.max) : slider.most,
+      isWhole: slider.is_whole
+    };
   }
   function restartMap() {
     if (!isMapping() || othersThanAxes() === mappedWith) return;
@@ -229,7 +300,9 @@
     map.start([axisOf(at('map-x').value), axisOf(at('map-y').value)]);
     showMapHere();
   }
-  function showMapHere() { if (at('map-x').value && at('map-y').value) map.setHere([at('map-x').value, at('map-y').value].map((path) => sliders.value(path))); }
+  function showMapHere() {
+    if (at('map-x').value && at('map-y').value) map.setHere([at('map-x').value, at('map-y').value].map((path) => sliders.value(path)));
+  }
   function chooseOnMap(x, y) {
     for (const [id, value] of [['map-x', x], ['map-y', y]]) sliders.put(at(id).value, value);
   }
@@ -247,8 +320,12 @@
     at('map-start').setAttribute('aria-pressed', String(wanted));
     at('map-start').textContent = wanted ? 'Stop' : 'Fill in';
     mappedWith = '';
-    if (wanted && at('map-x').value !== at('map-y').value) restartMap(); else map.stop();
-    if (wanted && at('map-x').value === at('map-y').value) { at('map-text').textContent = 'Choose two different values.'; toggleMap(); }
+    if (wanted && at('map-x').value !== at('map-y').value) restartMap();
+    else map.stop();
+    if (wanted && at('map-x').value === at('map-y').value) {
+      at('map-text').textContent = 'Choose two different values.';
+      toggleMap();
+    }
   }
 
   // --- saving, reports --------------------------------------------------------------------------------------------
@@ -257,12 +334,14 @@
     at('saved').textContent = '';
     try {
       const answer = await answers.post('save', { model, values: sliders.changed(), name: at('save-name').value.trim() });
-      at('saved').textContent = answer.errors ? answer.errors.map((e) => e.message).join(' ') : `Saved: ${answer.file}. Run it with: steplap simulate ${answer.file}`;
+      at('saved').textContent = answer.errors ? answer.errors.map((e) => e.message).join(' ')
+                                              : `Saved: ${answer.file}. Run it with: steplap simulate ${answer.file}`;
     } catch (error) {
       at('saved').textContent = `Not saved: ${error.message}`;
     }
   }
-  const openReport = () => window.open(`report?model=${model}&values=${encodeURIComponent(JSON.stringify(sliders.changed()))}`, '_blank', 'noopener');
+  const openReport = () =>
+    window.open(`report?model=${model}&values=${encodeURIComponent(JSON.stringify(sliders.changed()))}`, '_blank', 'noopener');
 
   // --- models and their files ---------------------------------------------------------------------------------------
   function showModel() {
@@ -270,7 +349,10 @@
     at('title').textContent = one.title || one.name;
     at('subtitle').textContent = one.path;
     document.title = `steplap explore: ${one.name}`;
-    if (!at('save-name').value || at('save-name').dataset.of !== one.name) { at('save-name').value = `${one.name}_changed.toml`; at('save-name').dataset.of = one.name; }
+    if (!at('save-name').value || at('save-name').dataset.of !== one.name) {
+      at('save-name').value = `${one.name}_changed.toml`;
+      at('save-name').dataset.of = one.name;
+    }
     troubles.file = one.errors;
     showTroubles();
     sliders.set(one.sliders);
@@ -281,13 +363,17 @@
     for (;;) {
       try {
         const state = await answers.state(version);
-        if (troubles.server.length) { troubles.server = []; showTroubles(); }
+        if (troubles.server.length) {
+          troubles.server = [];
+          showTroubles();
+        }
         if (state.version === version) continue;
         const isFirst = version === 0;
         version = state.version;
         models = state.models;
         if (isFirst) {
-          at('footer').textContent = `Served by ${state.program} on this computer only, until it is ended with Ctrl-C. Plots by dygraphs, © Dan Vanderkam and contributors, MIT licence.`;
+          at('footer').textContent = `Served by ${state.program} on this computer only, until it is ended with Ctrl-C. ` +
+            'Plots by dygraphs, © Dan Vanderkam and contributors, MIT licence.';
           at('model').replaceChildren(...models.map((m, k) => make('option', { value: k }, m.name)));
           at('model-control').hidden = models.length < 2;
         }
@@ -317,27 +403,63 @@
     askOld().catch(onSilence);
   }
 
-  for (const [id, action] of [['closer', () => view.zoomAt(scenes[0], 1.5)], ['further', () => view.zoomAt(scenes[0], 1 / 1.5)], ['whole', () => view.reset()]]) {
+  for (const [id, action] of [['closer', () => view.zoomAt(scenes[0], 1.5)], ['further', () => view.zoomAt(scenes[0], 1 / 1.5)],
+         ['whole', () => view.reset()]]) {
     at(id).append(steplap.icon(id));
     at(id).addEventListener('click', action);
   }
-  for (const id of ['magnification', 'seen-from']) at(id).addEventListener('change', () => { fit(); view.reset(); });
+  for (const id of ['magnification', 'seen-from'])
+    at(id).addEventListener('change', () => {
+      fit();
+      view.reset();
+    });
   at('time').addEventListener('input', (event) => go(Number(event.target.value)));
   at('play').addEventListener('click', () => setPlaying(!isPlaying()));
   at('worst').addEventListener('click', () => go(steplap.overview.worstOf([before, now])));
-  at('reset').addEventListener('click', () => { sliders.reset(); onChange(); });
+  at('reset').addEventListener('click', () => {
+    sliders.reset();
+    onChange();
+  });
   at('keep').addEventListener('click', keep);
   at('report').addEventListener('click', openReport);
   at('save-form').addEventListener('submit', save);
   at('model').addEventListener('change', chooseModel);
   at('map-start').addEventListener('click', toggleMap);
-  for (const id of ['map-x', 'map-y']) at(id).addEventListener('change', () => { mappedWith = ''; restartMap(); showMapHere(); });
+  for (const id of ['map-x', 'map-y'])
+    at(id).addEventListener('change', () => {
+      mappedWith = '';
+      restartMap();
+      showMapHere();
+    });
   sliders.onShown = offerAxes;
-  window.addEventListener('resize', () => { if (now) { fit(); show(t); } });
-  window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { if (plots) { plots.build(); show(t); } });
+  window.addEventListener('resize', () => {
+    if (now) {
+      fit();
+      show(t);
+    }
+  });
+  window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+    if (plots) {
+      plots.build();
+      show(t);
+    }
+  });
   listenToKeys();
   setPlaying(false);
   steplap.onPaper = (action) => action();
-  steplap.page = { answers, isIdle: () => answers.isIdle && !asksOfOld, sliders, map, latencies, show: go, time: () => t, scenes, runs: () => [before, now], version: () => version, get plots() { return plots; }, get view() { return view; } };
+  steplap.page = {
+    answers,
+    isIdle: () => answers.isIdle && !asksOfOld,
+    sliders,
+    map,
+    latencies,
+    show: go,
+    time: () => t,
+    scenes,
+    runs: () => [before, now],
+    version: () => version,
+    get plots() { return plots; },
+    get view() { return view; }
+  };
   follow();
 })();

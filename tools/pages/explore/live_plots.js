@@ -28,7 +28,8 @@ steplap.LivePlots = class LivePlots extends steplap.Plots {
   // Called before another object replaces this one.
   end() {
     this.watcher.disconnect();
-    for (const plot of this.plots) if (plot.graph) plot.graph.destroy();
+    for (const plot of this.plots)
+      if (plot.graph) plot.graph.destroy();
   }
   // Sets the runs to draw. Figures are rebuilt if their channels differ.
   setRuns(from, to) {
@@ -37,7 +38,9 @@ steplap.LivePlots = class LivePlots extends steplap.Plots {
     this.full = full;
     if (isWhole || !isSame) this.window = full;
     if (!from || !this.plots.length || !this.plots.every((plot) => plot.replaceRun(from, to))) return this.renew();
-    for (const plot of this.plots) if (this.inView.has(plot)) plot.refresh(); else this.late.add(plot);
+    for (const plot of this.plots)
+      if (this.inView.has(plot)) plot.refresh();
+      else this.late.add(plot);
   }
   renew() {
     this.figures = steplap.figures.of(steplap.data.runs);

@@ -4,7 +4,10 @@ steplap.ValueMap = class ValueMap {
   // selects a pair.
   constructor({ canvas, text, what, ask, onChoose }) {
     Object.assign(this, { canvas, text, what, ask, onChoose, cells: new Map(), generation: 0, cursor: null });
-    canvas.addEventListener('click', (event) => { const box = canvas.getBoundingClientRect(); this.choose(this.cellAt((event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height)); });
+    canvas.addEventListener('click', (event) => {
+      const box = canvas.getBoundingClientRect();
+      this.choose(this.cellAt((event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height));
+    });
     canvas.addEventListener('keydown', (event) => {
       const moves = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
       if (!this.axes) return;
@@ -14,7 +17,12 @@ steplap.ValueMap = class ValueMap {
       event.preventDefault();
       event.stopPropagation();
     });
-    canvas.addEventListener('pointermove', (event) => { if (this.axes) { const box = canvas.getBoundingClientRect(); this.point(this.cellAt((event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height)); } });
+    canvas.addEventListener('pointermove', (event) => {
+      if (this.axes) {
+        const box = canvas.getBoundingClientRect();
+        this.point(this.cellAt((event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height));
+      }
+    });
     what.addEventListener('change', () => this.draw());
   }
   static get count() { return 24; } // cells per side
@@ -23,12 +31,25 @@ steplap.ValueMap = class ValueMap {
   static order() {
     const list = [], seen = new Set(), n = ValueMap.count;
     for (const step of [8, 4, 2, 1])
-      for (let j = step >> 1; j < n; j += step) for (let i = step >> 1; i < n; i += step) if (!seen.has(j * n + i)) { seen.add(j * n + i); list.push([i, j]); }
+      for (let j = step >> 1; j < n; j += step)
+        for (let i = step >> 1; i < n; i += step)
+          if (!seen.has(j * n + i)) {
+            seen.add(j * n + i);
+            list.push([i, j]);
+          }
     return list;
   }
-  cellAt(x, y) { const n = ValueMap.count, inside = (v) => Math.min(n - 1, Math.max(0, Math.floor(v * n))); return [inside(x), inside(1 - y)]; }
-  valueAt(axis, k) { const v = axis.least + ((axis.most - axis.least) * (k + 0.5)) / ValueMap.count; return axis.isWhole ? Math.round(v) : v; }
-  choose([i, j]) { if (this.axes) this.onChoose(this.valueAt(this.axes[0], i), this.valueAt(this.axes[1], j)); }
+  cellAt(x, y) {
+    const n = ValueMap.count, inside = (v) => Math.min(n - 1, Math.max(0, Math.floor(v * n)));
+    return [inside(x), inside(1 - y)];
+  }
+  valueAt(axis, k) {
+    const v = axis.least + ((axis.most - axis.least) * (k + 0.5)) / ValueMap.count;
+    return axis.isWhole ? Math.round(v) : v;
+  }
+  choose([i, j]) {
+    if (this.axes) this.onChoose(this.valueAt(this.axes[0], i), this.valueAt(this.axes[1], j));
+  }
 
   // Axes: { path, label, unit, least, most, isWhole }. Fills the map until it is stopped or restarted.
   async start(axes) {
@@ -40,7 +61,8 @@ steplap.ValueMap = class ValueMap {
     let left = ValueMap.order();
     this.draw();
     while (left.length && generation === this.generation) {
-      const some = left.slice(0, ValueMap.atOnce), answer = await this.ask(axes[0].path, axes[1].path, some.map(([i, j]) => [this.valueAt(axes[0], i), this.valueAt(axes[1], j)]));
+      const some = left.slice(0, ValueMap.atOnce),
+            answer = await this.ask(axes[0].path, axes[1].path, some.map(([i, j]) => [this.valueAt(axes[0], i), this.valueAt(axes[1], j)]));
       if (generation !== this.generation || !answer) return;
       answer.cells.forEach((cell, k) => {
         this.cells.set(some[k].join(), cell);
@@ -70,7 +92,8 @@ steplap.ValueMap = class ValueMap {
   colourOf(cell) {
     const style = getComputedStyle(document.documentElement), named = (name) => style.getPropertyValue(`--${name}`).trim();
     if (cell.error) return null;
-    if (this.what.value === 'verdict' || !this.what.value) return named({ hold: 'good', inspect: 'warn-bar', reject: 'bad' }[cell.verdict] || 'plain');
+    if (this.what.value === 'verdict' || !this.what.value)
+      return named({ hold: 'good', inspect: 'warn-bar', reject: 'bad' }[cell.verdict] || 'plain');
     const share = this.shareOf(cell);
     if (!Number.isFinite(share)) return named('plain');
     // Colours: light to dark green up to the limit, orange to red beyond it.
@@ -84,28 +107,58 @@ steplap.ValueMap = class ValueMap {
       const [i, j] = key.split(',').map(Number), colour = this.colourOf(cell), x = i * size, y = (n - 1 - j) * size;
       context.fillStyle = context.strokeStyle = colour || '#888';
       if (colour) context.fillRect(x, y, size, size);
-      else { context.beginPath(); context.moveTo(x + 2, y + 2); context.lineTo(x + size - 2, y + size - 2); context.stroke(); } // no valid model, or no run
-      if (this.what.value !== 'verdict' && this.what.value && !cell.error && this.shareOf(cell) > 1) { context.fillStyle = '#0008'; context.fillRect(x + size / 2 - 1, y + size / 2 - 1, 2, 2); } // told by more than its colour
+      else {
+        context.beginPath();
+        context.moveTo(x + 2, y + 2);
+        context.lineTo(x + size - 2, y + size - 2);
+        context.stroke();
+      } // no valid model, or no run
+      if (this.what.value !== 'verdict' && this.what.value && !cell.error && this.shareOf(cell) > 1) {
+        context.fillStyle = '#0008';
+        context.fillRect(x + size / 2 - 1, y + size / 2 - 1, 2, 2);
+      } // told by more than its colour
     }
     if (this.axes && this.here) this.cross(context, size);
     this.tell();
   }
   // Marks the values of the sliders.
   cross(context, size) {
-    const n = ValueMap.count, place = this.axes.map((a, k) => ((this.here[k] - a.least) / (a.most - a.least)) * n * size), x = place[0], y = n * size - place[1];
-    context.lineWidth = 3; context.strokeStyle = '#fff';
+    const n = ValueMap.count, place = this.axes.map((a, k) => ((this.here[k] - a.least) / (a.most - a.least)) * n * size), x = place[0],
+          y = n * size - place[1];
+    context.lineWidth = 3;
+    context.strokeStyle = '#fff';
     for (let pass = 0; pass < 2; ++pass) {
-      context.beginPath(); context.moveTo(x - 7, y); context.lineTo(x + 7, y); context.moveTo(x, y - 7); context.lineTo(x, y + 7); context.stroke();
-      context.lineWidth = 1.4; context.strokeStyle = '#000';
+      context.beginPath();
+      context.moveTo(x - 7, y);
+      context.lineTo(x + 7, y);
+      context.moveTo(x, y - 7);
+      context.lineTo(x, y + 7);
+      context.stroke();
+      context.lineWidth = 1.4;
+      context.strokeStyle = '#000';
     }
   }
-  setHere(values) { this.here = values; if (this.axes) this.draw(); }
-  point(cell) { this.cursor = cell; this.tell(); }
+  setHere(values) {
+    this.here = values;
+    if (this.axes) this.draw();
+  }
+  point(cell) {
+    this.cursor = cell;
+    this.tell();
+  }
   tell() {
     if (!this.axes) return;
-    const n = ValueMap.count ** 2, [x, y] = this.axes, quantity = (axis, k) => steplap.data.quantity(this.valueAt(axis, k), axis.unit, 3), cell = this.cells.get(this.cursor.join());
-    const found = !cell ? 'not computed yet' : cell.error || `${cell.verdict}, ${this.what.value && this.what.value !== 'verdict' ? this.what.value : 'nearest limit'}: ${steplap.numbers.percent(this.shareOf(cell))}`;
-    this.text.textContent = `${x.label} ${quantity(x, this.cursor[0])}, ${y.label} ${quantity(y, this.cursor[1])}: ${found}. ${this.cells.size < n ? `${this.cells.size} of ${n} runs.` : ''} Errors are not estimated here.`;
-    this.canvas.setAttribute('aria-label', `Map of ${x.label} from ${steplap.data.quantity(x.least, x.unit, 3)} to ${steplap.data.quantity(x.most, x.unit, 3)} and ${y.label} from ${steplap.data.quantity(y.least, y.unit, 3)} to ${steplap.data.quantity(y.most, y.unit, 3)}. Arrows look around, Enter takes the pair.`);
+    const n = ValueMap.count ** 2, [x, y] = this.axes, quantity = (axis, k) => steplap.data.quantity(this.valueAt(axis, k), axis.unit, 3),
+          cell = this.cells.get(this.cursor.join());
+    const found = !cell ? 'not computed yet'
+                        : cell.error ||
+        `${cell.verdict}, ${this.what.value && this.what.value !== 'verdict' ? this.what.value : 'nearest limit'}: ${
+          steplap.numbers.percent(this.shareOf(cell))}`;
+    this.text.textContent = `${x.label} ${quantity(x, this.cursor[0])}, ${y.label} ${quantity(y, this.cursor[1])}: ${found}. ${
+      this.cells.size < n ? `${this.cells.size} of ${n} runs.` : ''} Errors are not estimated here.`;
+    this.canvas.setAttribute('aria-label',
+      `Map of ${x.label} from ${steplap.data.quantity(x.least, x.unit, 3)} to ${steplap.data.quantity(x.most, x.unit, 3)} and ${
+        y.label} from ${steplap.data.quantity(y.least, y.unit, 3)} to ${
+        steplap.data.quantity(y.most, y.unit, 3)}. Arrows look around, Enter takes the pair.`);
   }
 };

@@ -4,16 +4,27 @@ steplap.Sliders = class Sliders {
   constructor(box, { search, found, onChange }) {
     Object.assign(this, { box, search, foundBox: found, onChange, given: new Map(), shown: [], rows: new Map(), values: new Map() });
     search.addEventListener('input', () => this.find());
-    search.addEventListener('keydown', (event) => { if (event.key === 'Enter') { event.preventDefault(); const first = this.foundBox.querySelector('button'); if (first) first.click(); } });
+    search.addEventListener('keydown', (event) => {
+      if (event.key === 'Enter') {
+        event.preventDefault();
+        const first = this.foundBox.querySelector('button');
+        if (first) first.click();
+      }
+    });
   }
   static get first() { return 12; } // sliders shown initially for models with many values
-  static label(slider) { return slider.path.replace(/^(?!simulation\.|output\.|gravity)[a-z_]+\.(?=.+\.|[^.]+$)/, '').replace(/\.([a-z_0-9]+)((\.\d+)*)$/, (_, field, items) => `: ${field.replace(/_/g, ' ')}${items.replace(/\.(\d+)/g, (__, i) => ` ${Number(i) + 1}`)}`); }
+  static label(slider) {
+    return slider.path.replace(/^(?!simulation\.|output\.|gravity)[a-z_]+\.(?=.+\.|[^.]+$)/, '')
+      .replace(/\.([a-z_0-9]+)((\.\d+)*)$/,
+        (_, field, items) => `: ${field.replace(/_/g, ' ')}${items.replace(/\.(\d+)/g, (__, i) => ` ${Number(i) + 1}`)}`);
+  }
 
   // Sets the values of a model that has just been read. Sliders already shown and changed values remain.
   set(sliders) {
     this.given = new Map(sliders.map((s) => [s.path, s]));
     this.shown = this.shown.filter((path) => this.given.has(path));
-    for (const path of [...this.values.keys()]) if (!this.given.has(path)) this.values.delete(path);
+    for (const path of [...this.values.keys()])
+      if (!this.given.has(path)) this.values.delete(path);
     const groups = ['parameters', 'friction', 'pressure', 'peak', 'duration', 'gap', 'stiffness'];
     if (!this.shown.length) {
       const wanted = sliders.filter((s) => groups.includes(s.group)).sort((a, b) => groups.indexOf(a.group) - groups.indexOf(b.group));
@@ -21,7 +32,10 @@ steplap.Sliders = class Sliders {
       // If there are too many, some of each group are shown.
       const most = Math.max(Sliders.first, parameters), chosen = wanted.slice(0, parameters), rest = wanted.slice(parameters);
       for (let round = 0; chosen.length < most && chosen.length < wanted.length; ++round)
-        for (const group of groups) { const s = rest.filter((r) => r.group === group)[round]; if (s && chosen.length < most) chosen.push(s); }
+        for (const group of groups) {
+          const s = rest.filter((r) => r.group === group)[round];
+          if (s && chosen.length < most) chosen.push(s);
+        }
       this.shown = chosen.map((s) => s.path);
     }
     this.groups = groups;
@@ -33,7 +47,10 @@ steplap.Sliders = class Sliders {
 
   build() {
     this.rows.clear();
-    const rank = (s) => { const k = this.groups.indexOf(s.group); return k < 0 ? this.groups.length : k; };
+    const rank = (s) => {
+      const k = this.groups.indexOf(s.group);
+      return k < 0 ? this.groups.length : k;
+    };
     const sorted = this.shown.map((path) => this.given.get(path)).sort((a, b) => rank(a) - rank(b)), parts = [];
     let group = null;
     for (const slider of sorted) {
@@ -46,17 +63,37 @@ steplap.Sliders = class Sliders {
   }
   row(slider) {
     const make = steplap.make, id = `value-${slider.path}`, name = Sliders.label(slider);
-    const range = make('input', { type: 'range', id, min: String(slider.least), max: String(slider.most), step: 'any', 'data-path': slider.path });
+    const range =
+      make('input', { type: 'range', id, min: String(slider.least), max: String(slider.most), step: 'any', 'data-path': slider.path });
     const number = make('input', { class: 'number', inputmode: 'decimal', 'aria-label': `${name}, number`, spellcheck: 'false' });
-    const least = make('input', { 'aria-label': `${name}, lower end`, inputmode: 'decimal' }), most = make('input', { 'aria-label': `${name}, upper end`, inputmode: 'decimal' });
-    const back = make('button', { type: 'button', class: 'back', 'aria-label': `${name} as in the file` }, 'back'), was = make('span', { class: 'was' });
-    const box = make('div', { class: 'value', 'data-value': slider.path, title: [slider.path, slider.meaning].filter(Boolean).join('\n') }, make('label', { for: id }, name),
-      make('div', { class: 'line' }, range, number, make('span', { class: 'unit' }, steplap.data.pretty(slider.unit))), make('div', { class: 'ends' }, least, was, back, most));
-    const put = (value) => { if (Number.isFinite(value)) this.change(slider, slider.is_whole ? Math.round(value) : value); };
+    const least = make('input', { 'aria-label': `${name}, lower end`, inputmode: 'decimal' }),
+          most = make('input', { 'aria-label': `${name}, upper end`, inputmode: 'decimal' });
+    const back = make('button', { type: 'button', class: 'back', 'aria-label': `${name} as in the file` }, 'back'),
+          was = make('span', { class: 'was' });
+    const box = make('div', { class: 'value', 'data-value': slider.path, title: [slider.path, slider.meaning].filter(Boolean).join('\n') },
+      make('label',
+        { for: id
+        },
+        name),
+      make('div', { class: 'line' }, range, number, make('span', { class: 'unit' }, steplap.data.pretty(slider.unit))),
+      make('div', { class: 'ends' }, least, was, back, most));
+    const put = (value) => {
+      if (Number.isFinite(value)) this.change(slider, slider.is_whole ? Math.round(value) : value);
+    };
     range.addEventListener('input', () => put(Number(range.value)));
     range.addEventListener('keydown', (event) => {
-      const span = Number(range.max) - Number(range.min), step = slider.is_whole ? Math.max(1, Math.round(span / 100)) : span / 100, now = this.value(slider.path);
-      const moves = { ArrowRight: now + step, ArrowUp: now + step, ArrowLeft: now - step, ArrowDown: now - step, PageUp: now + 10 * step, PageDown: now - 10 * step, Home: Number(range.min), End: Number(range.max) };
+      const span = Number(range.max) - Number(range.min), step = slider.is_whole ? Math.max(1, Math.round(span / 100)) : span / 100,
+            now = this.value(slider.path);
+      const moves = {
+        ArrowRight: now + step,
+        ArrowUp: now + step,
+        ArrowLeft: now - step,
+        ArrowDown: now - step,
+        PageUp: now + 10 * step,
+        PageDown: now - 10 * step,
+        Home: Number(range.min),
+        End: Number(range.max)
+      };
       if (!(event.key in moves) || event.ctrlKey || event.altKey || event.metaKey) return;
       event.preventDefault();
       put(Math.min(Number(range.max), Math.max(Number(range.min), moves[event.key])));
@@ -65,7 +102,8 @@ steplap.Sliders = class Sliders {
     for (const [end, attribute] of [[least, 'min'], [most, 'max']])
       end.addEventListener('change', () => {
         const wanted = Number(end.value.replace(',', '.')), other = Number(attribute === 'min' ? range.max : range.min);
-        if (end.value.trim() !== '' && Number.isFinite(wanted) && (attribute === 'min' ? wanted < other : wanted > other)) range[attribute] = String(wanted);
+        if (end.value.trim() !== '' && Number.isFinite(wanted) && (attribute === 'min' ? wanted < other : wanted > other))
+          range[attribute] = String(wanted);
         this.show(slider.path);
       });
     back.addEventListener('click', () => this.change(slider, slider.value));
@@ -73,7 +111,8 @@ steplap.Sliders = class Sliders {
     return box;
   }
   change(slider, value) {
-    if (value === slider.value) this.values.delete(slider.path); else this.values.set(slider.path, value);
+    if (value === slider.value) this.values.delete(slider.path);
+    else this.values.set(slider.path, value);
     this.show(slider.path);
     this.onChange(slider.path, value);
   }
@@ -86,7 +125,10 @@ steplap.Sliders = class Sliders {
   show(path) {
     const row = this.rows.get(path), slider = this.given.get(path);
     if (!row) return;
-    const value = this.value(path), plain = (v) => { const known = Number(v.toPrecision(6)); return Math.abs(known) >= 1e6 ? known.toExponential().replace('e+', 'e') : String(known); };
+    const value = this.value(path), plain = (v) => {
+      const known = Number(v.toPrecision(6));
+      return Math.abs(known) >= 1e6 ? known.toExponential().replace('e+', 'e') : String(known);
+    };
     if (value < Number(row.range.min)) row.range.min = String(value);
     if (value > Number(row.range.max)) row.range.max = String(value);
     row.range.value = String(value);
@@ -97,12 +139,16 @@ steplap.Sliders = class Sliders {
     const isChanged = this.values.has(path);
     row.box.classList.toggle('changed', isChanged);
     row.back.hidden = !isChanged;
-    row.was.textContent = isChanged ? `was ${steplap.data.quantity(slider.value, slider.unit, 4)}` : steplap.data.quantity(value, slider.unit, 4);
+    row.was.textContent =
+      isChanged ? `was ${steplap.data.quantity(slider.value, slider.unit, 4)}` : steplap.data.quantity(value, slider.unit, 4);
   }
   // Shows a slider for a further value.
   add(path) {
     if (!this.given.has(path)) return;
-    if (!this.shown.includes(path)) { this.shown.push(path); this.build(); }
+    if (!this.shown.includes(path)) {
+      this.shown.push(path);
+      this.build();
+    }
     const { range } = this.rows.get(path);
     range.scrollIntoView({ block: 'nearest' });
     range.focus();
@@ -114,8 +160,13 @@ steplap.Sliders = class Sliders {
     const text = (s) => `${s.path} ${s.path.replace(/_/g, ' ')} ${s.group} ${s.meaning}`.toLowerCase();
     const found = [...this.given.values()].filter((s) => !this.shown.includes(s.path) && words.every((w) => text(s).includes(w)));
     const buttons = found.slice(0, most).map((s) => {
-      const button = steplap.make('button', { type: 'button', 'data-add': s.path }, `${Sliders.label(s)}, ${steplap.data.quantity(s.value, s.unit, 4)}`);
-      button.addEventListener('click', () => { this.add(s.path); this.search.value = ''; this.find(); });
+      const button =
+        steplap.make('button', { type: 'button', 'data-add': s.path }, `${Sliders.label(s)}, ${steplap.data.quantity(s.value, s.unit, 4)}`);
+      button.addEventListener('click', () => {
+        this.add(s.path);
+        this.search.value = '';
+        this.find();
+      });
       return button;
     });
     const rest = found.length > most ? `${found.length - most} more: type more of the name.` : found.length ? '' : 'No such value.';

@@ -16,7 +16,10 @@ steplap.animation = (() => {
   function joined(parts) {
     const all = new Uint8Array(parts.reduce((sum, p) => sum + p.length, 0));
     let at = 0;
-    for (const p of parts) { all.set(p, at); at += p.length; }
+    for (const p of parts) {
+      all.set(p, at);
+      at += p.length;
+    }
     return all;
   }
   function chunk(type, data) {
@@ -37,7 +40,8 @@ steplap.animation = (() => {
     const all = frames.map(chunksOf), header = all[0].find((c) => c.type === 'IHDR').data, size = header.subarray(0, 8);
     const parts = [Uint8Array.from(signature), chunk('IHDR', header), chunk('acTL', packed([frames.length, 4], [0, 4]))];
     let number = 0;
-    const shown = packed([0, 4], [0, 4], [delay, 2], [1000, 2], [0, 1], [0, 1]); // at 0, 0; shown for delay/1000 s; replaces the previous frame
+    const shown =
+      packed([0, 4], [0, 4], [delay, 2], [1000, 2], [0, 1], [0, 1]); // at 0, 0; shown for delay/1000 s; replaces the previous frame
     all.forEach((chunks, k) => {
       parts.push(chunk('fcTL', joined([packed([number++, 4]), size, shown])));
       for (const { data } of chunks.filter((c) => c.type === 'IDAT'))

@@ -14,26 +14,59 @@ steplap.assessment = (() => {
   const rankOf = (verdict) => (verdicts.includes(verdict) ? verdicts.indexOf(verdict) : 2);
   // Result of one model for one event.
   function said(m) {
-    const joints = list(m.joints), slipping = joints.filter((j) => j.slips || j.came_apart).map((j) => j.name), byMargin = joints.filter((j) => isKnown(j.margin)).sort((a, b) => a.margin - b.margin);
-    return { ...m, joints, slipping, weakest: byMargin[0] || null, margin: byMargin.length ? byMargin[0].margin : null, slid: most(joints.map((j) => j.slid)), slidTotal: most(joints.map((j) => j.slid_total)),
-      overlap: least(joints.map((j) => j.overlap_left)), lifted: list(m.feet).filter((f) => f.lifts).map((f) => f.name), share: most(list(m.reactions).map((r) => r.share)),
-      reactions: list(m.reactions), clearances: list(m.clearances), findings: list(m.findings), feet: list(m.feet), probability: m.slip_probability || null };
+    const joints = list(m.joints), slipping = joints.filter((j) => j.slips || j.came_apart).map((j) => j.name),
+          byMargin = joints.filter((j) => isKnown(j.margin)).sort((a, b) => a.margin - b.margin);
+    return {
+      ...m,
+      joints,
+      slipping,
+      weakest: byMargin[0] || null,
+      margin: byMargin.length ? byMargin[0].margin : null,
+      slid: most(joints.map((j) => j.slid)),
+      slidTotal: most(joints.map((j) => j.slid_total)),
+      overlap: least(joints.map((j) => j.overlap_left)),
+      lifted: list(m.feet).filter((f) => f.lifts).map((f) => f.name),
+      share: most(list(m.reactions).map((r) => r.share)),
+      reactions: list(m.reactions),
+      clearances: list(m.clearances),
+      findings: list(m.findings),
+      feet: list(m.feet),
+      probability: m.slip_probability || null
+    };
   }
   const events = list(given && given.events).map((e, i) => {
     const models = list(e.models).map(said), peaks = list(e.peaks);
-    return { ...e, number: e.number ?? i + 1, models, peaks, rank: Math.min(3, ...models.map((m) => rankOf(m.verdict))), margin: least(models.map((m) => m.margin)),
-      chance: most(models.map((m) => (m.probability ? m.probability.value : null))), peak: most(peaks.map((p) => Math.abs(p.value))) };
+    return {
+      ...e,
+      number: e.number ?? i + 1,
+      models,
+      peaks,
+      rank: Math.min(3, ...models.map((m) => rankOf(m.verdict))),
+      margin: least(models.map((m) => m.margin)),
+      chance: most(models.map((m) => (m.probability ? m.probability.value : null))),
+      peak: most(peaks.map((p) => Math.abs(p.value)))
+    };
   });
-  const byNeed = (a, b) => a.rank - b.rank || (b.chance ?? -1) - (a.chance ?? -1) || (a.margin ?? Infinity) - (b.margin ?? Infinity) || (b.peak ?? 0) - (a.peak ?? 0);
+  const byNeed = (a, b) => a.rank - b.rank || (b.chance ?? -1) - (a.chance ?? -1) || (a.margin ?? Infinity) - (b.margin ?? Infinity) ||
+    (b.peak ?? 0) - (a.peak ?? 0);
   const worst = [...events].sort(byNeed);
 
-  const gravest = ['return', 'inspect', 'open', 'energise'], graveness = (r) => (gravest.includes(r.outcome) ? gravest.indexOf(r.outcome) : -1);
+  const gravest = ['return', 'inspect', 'open', 'energise'],
+        graveness = (r) => (gravest.includes(r.outcome) ? gravest.indexOf(r.outcome) : -1);
   const inG = (value) => `${String(Number((value / gravity).toPrecision(3))).replace('-', '−')}\u00a0g`;
-  const acceleration = (value, unit = 'm/s^2') => (isKnown(value) ? `${one(value, unit)}${unit === 'm/s^2' ? ` (${inG(value)})` : ''}` : '–');
+  const acceleration = (value, unit = 'm/s^2') =>
+    (isKnown(value) ? `${one(value, unit)}${unit === 'm/s^2' ? ` (${inG(value)})` : ''}` : '–');
   // Text of a peak, always with the bandwidth to which it was read.
-  const peakText = (p, brief) => `${p.axis}: ${brief && p.unit === 'm/s^2' ? inG(p.value) : acceleration(p.value, p.unit)} up to ${isKnown(p.bandwidth) ? one(p.bandwidth, 'Hz') : 'an unknown bandwidth'}${!brief && isKnown(p.velocity_change) ? `, Δv ${one(p.velocity_change, 'm/s')}` : ''}`;
-  const chanceText = (p) => (p && isKnown(p.value) ? `${percent(p.value)} (${percent(p.low)} to ${percent(p.high)}${isKnown(p.runs) ? `, ${p.runs} runs` : ''}${p.unknown ? `, ${p.unknown} without a result` : ''})` : '–');
-  const slipText = (m) => (m.slipping.length ? `${m.joints.some((j) => j.came_apart) ? 'comes apart' : 'slips'}: ${m.slipping.join(', ')}` : m.joints.length ? 'no joint slips' : 'no joints');
+  const peakText = (p, brief) => `${p.axis}: ${brief && p.unit === 'm/s^2' ? inG(p.value) : acceleration(p.value, p.unit)} up to ${
+    isKnown(p.bandwidth) ? one(p.bandwidth, 'Hz')
+                         : 'an unknown bandwidth'}${!brief && isKnown(p.velocity_change) ? `, Δv ${one(p.velocity_change, 'm/s')}` : ''}`;
+  const chanceText = (p) =>
+    (p && isKnown(p.value) ? `${percent(p.value)} (${percent(p.low)} to ${percent(p.high)}${isKnown(p.runs) ? `, ${p.runs} runs` : ''}${
+                               p.unknown ? `, ${p.unknown} without a result` : ''})`
+                                         : '–');
+  const slipText = (m) => (m.slipping.length ? `${m.joints.some((j) => j.came_apart) ? 'comes apart' : 'slips'}: ${m.slipping.join(', ')}`
+      : m.joints.length ? 'no joint slips'
+                        : 'no joints');
   // Formats a margin. That of a joint that slips has no error, that of a joint with hardly any load is only "over 1000".
   const margin = (j) => (j.margin > 1000 ? 'over\u00a01000' : one(j.margin, '', j.slips ? {} : { error: j.error, limit: 1 }));
   const marginText = (m) => (m.weakest ? margin(m.weakest) : '–');
@@ -45,13 +78,24 @@ steplap.assessment = (() => {
     if (!given) return [];
     const found = [];
     const rejected = events.filter((e) => e.rank === 0), open = events.filter((e) => e.models.some((m) => m.verdict === 'open'));
-    if (given.decision === 'energise' && rejected.length) found.push(`The decision is to energise, although a model does not hold in event ${rejected.slice(0, 5).map((e) => e.number).join(', ')}. Look at the criteria.`);
-    if (given.decision === 'energise' && open.length) found.push(`The decision is to energise, although a model's verdict is open in event ${open.slice(0, 5).map((e) => e.number).join(', ')}. Look at the criteria.`);
-    for (const e of events) for (const m of e.models) for (const j of m.joints)
-      if (!j.slips && isKnown(j.slid) && j.slid > 1e-9) found.push(`Event ${e.number}: joint '${j.name}' slid ${one(j.slid, 'm')}, but is said not to slip.`);
+    if (given.decision === 'energise' && rejected.length)
+      found.push(`The decision is to energise, although a model does not hold in event ${
+        rejected.slice(0, 5).map((e) => e.number).join(', ')}. Look at the criteria.`);
+    if (given.decision === 'energise' && open.length)
+      found.push(`The decision is to energise, although a model's verdict is open in event ${
+        open.slice(0, 5).map((e) => e.number).join(', ')}. Look at the criteria.`);
+    for (const e of events)
+      for (const m of e.models)
+        for (const j of m.joints)
+          if (!j.slips && isKnown(j.slid) && j.slid > 1e-9)
+            found.push(`Event ${e.number}: joint '${j.name}' slid ${one(j.slid, 'm')}, but is said not to slip.`);
     for (const t of list(given.voyage && given.voyage.joints)) {
-      const sums = events.flatMap((e) => e.models.filter((m) => m.model === t.model).flatMap((m) => m.joints.filter((j) => j.name === t.name))), sum = sums.reduce((s, j) => s + (j.slid || 0), 0);
-      if (sums.length && isKnown(t.slid_total) && Math.abs(sum - t.slid_total) > 1e-6 + 1e-3 * Math.abs(sum)) found.push(`Joint '${t.name}' of '${t.model}' slid ${one(t.slid_total, 'm')} in the voyage, but ${one(sum, 'm')} in its events together.`);
+      const sums =
+              events.flatMap((e) => e.models.filter((m) => m.model === t.model).flatMap((m) => m.joints.filter((j) => j.name === t.name))),
+            sum = sums.reduce((s, j) => s + (j.slid || 0), 0);
+      if (sums.length && isKnown(t.slid_total) && Math.abs(sum - t.slid_total) > 1e-6 + 1e-3 * Math.abs(sum))
+        found.push(
+          `Joint '${t.name}' of '${t.model}' slid ${one(t.slid_total, 'm')} in the voyage, but ${one(sum, 'm')} in its events together.`);
     }
     return found.slice(0, 8);
   }
@@ -63,17 +107,64 @@ steplap.assessment = (() => {
     return { verdict, reason: statics.map(text).join(' ') };
   }
   // The record states range and bandwidth of its recorder; they fill fields that the papers leave empty.
-  const recorderOf = (record) => ({ record: record.file, range: isKnown(record.sensor_range) ? inG(record.sensor_range) : '', filter: isKnown(record.bandwidth) ? `read up to ${one(record.bandwidth, 'Hz')}` : '' });
+  const recorderOf = (record) => ({
+    record: record.file,
+    range: isKnown(record.sensor_range) ? inG(record.sensor_range) : '',
+    filter: isKnown(record.bandwidth) ? `read up to ${one(record.bandwidth, 'Hz')}` : ''
+  });
   function papers() {
     const p = (given && given.shipment) || {}, stated = list(p.recorders), read = list(given && given.records).map(recorderOf);
-    const filled = (r) => { const found = read.find((q) => q.record === r.record) || (read.length === 1 && stated.length === 1 ? read[0] : {}); return { ...r, record: r.record || found.record || '', range: r.range || found.range || '', filter: r.filter || found.filter || '' }; };
-    return { transformer: p.transformer || '', departure: p.departure || '', arrival: p.arrival || '', handovers: list(p.handovers), recorders: stated.length ? stated.map(filled) : read.length ? read : [{}] };
+    const filled = (r) => {
+      const found = read.find((q) => q.record === r.record) || (read.length === 1 && stated.length === 1 ? read[0] : {});
+      return {...r, record: r.record || found.record || '', range: r.range || found.range || '', filter: r.filter || found.filter || '' };
+    };
+    return {
+      transformer: p.transformer || '',
+      departure: p.departure || '',
+      arrival: p.arrival || '',
+      handovers: list(p.handovers),
+      recorders: stated.length ? stated.map(filled)
+        : read.length          ? read
+                               : [{}]
+    };
   }
   const statics = raw.static ? list(raw.static.static_proofs || [raw.static]) : [];
   const models = list(given && given.models);
-  return { papers: papers(), covered: (given && given.covered) || '', coveredShare: given ? given.covered_share : null, journey: (given && given.journey) || '', program: raw.program, folder: raw.folder, given, events, worst, models, statics, records: list(given && given.records), reasons: list(given && given.reasons).sort((a, b) => graveness(a) - graveness(b)), hangs: list(given && given.hangs_on), tests: list(given && given.tests),
-    assumptions: [...list(given && given.assumptions), ...statics.flatMap((s) => list(s.assumptions))], criteria: (given && given.criteria) || null, voyage: (given && given.voyage) || {}, totals: list(given && given.voyage && given.voyage.joints),
-    uncertain: models.flatMap((m) => list(m.uncertain).map((u) => ({ ...u, model: m.name }))), unknown: models.map((m) => ({ name: m.name, list: list(m.knows_not) })).filter((m) => m.list.length),
-    list, rankOf, words, outcomes, acceleration, peakText, chanceText, slipText, slidText, margin, marginText, timeText, contradictions,
-    answer };
+  return {
+    papers: papers(),
+    covered: (given && given.covered) || '',
+    coveredShare: given ? given.covered_share : null,
+    journey: (given && given.journey) || '',
+    program: raw.program,
+    folder: raw.folder,
+    given,
+    events,
+    worst,
+    models,
+    statics,
+    records: list(given && given.records),
+    reasons: list(given && given.reasons).sort((a, b) => graveness(a) - graveness(b)),
+    hangs: list(given && given.hangs_on),
+    tests: list(given && given.tests),
+    assumptions: [...list(given && given.assumptions), ...statics.flatMap((s) => list(s.assumptions))],
+    criteria: (given && given.criteria) || null,
+    voyage: (given && given.voyage) || {},
+    totals: list(given && given.voyage && given.voyage.joints),
+    uncertain: models.flatMap((m) => list(m.uncertain).map((u) => ({...u, model: m.name }))),
+    unknown: models.map((m) => ({ name: m.name, list: list(m.knows_not) })).filter((m) => m.list.length),
+    list,
+    rankOf,
+    words,
+    outcomes,
+    acceleration,
+    peakText,
+    chanceText,
+    slipText,
+    slidText,
+    margin,
+    marginText,
+    timeText,
+    contradictions,
+    answer
+  };
 })();

@@ -10,14 +10,14 @@ steplap.eventMachine = (() => {
     return known.sort((a, b) => A.rankOf(a.verdict) - A.rankOf(b.verdict))[0] || null;
   }
   // Returns { picture, text }, or null if no run was made or written.
-  function of(e, columns) {
+  function of (e, columns) {
     const said = gravest(e);
     if (!said) return null;
     const { drawing, recorder } = A.models.find((model) => model.name === said.model);
     const run = steplap.data.still(said.model, drawing), moved = [...said.slipping, ...said.lifted];
     run.poseOf = (name) => (isPose(said.poses[name]) ? said.poses[name] : null);
     run.events = said.slipping.map((name) => [0, name, 'slips', '', 'slip']);
-    run.summary = { ...run.summary, overview: { moved, story: [], utilisations: [], reason: '', verdict: said.verdict } };
+    run.summary = {...run.summary, overview: { moved, story: [], utilisations: [], reason: '', verdict: said.verdict } };
     const seenFrom = recorder && run.drawing.bodies.some((b) => b.name === recorder.body) ? recorder.body : 'ground';
     const at = Number.isFinite(said.worst_time) ? ` at ${steplap.numbers.one(said.worst_time, 's')} of the record` : '';
     const text = `Event ${e.number}${at}: ${said.model} where a limit is nearest.`;

@@ -19,8 +19,11 @@ steplap.axes = (() => {
   function label(value, step) {
     const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
     const size = Math.max(Math.abs(value), step);
-    if (size >= 1e7 || decimals > 7) return (Math.abs(value) < 1e-9 * step ? '0' : value.toExponential(Math.max(0, Math.ceil(Math.log10(size / step)))).replace(/-/g, '−').replace('e+', 'e'));
-    let text = value.toFixed(decimals);
+    if (size >= 1e7 || decimals > 7)
+      return (Math.abs(value) < 1e-9 * step
+          ? '0'
+          : value.toExponential(Math.max(0, Math.ceil(Math.log10(size / step)))).replace(/-/g, '−').replace('e+', 'e'));
+    const text = value.toFixed(decimals);
     if (Number(text) === 0) return '0';
     return text.replace('-', '−');
   }

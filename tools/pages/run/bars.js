@@ -1,12 +1,11 @@
 // Utilisation of each limit as bars on one scale, the highest first, with the limit as a line through all of them. Several runs have one
 // bar each under a common name; bars of the same kind at the same place are paired even if their names differ.
 steplap.bars = (() => {
-  const make = steplap.make, { percent, one, full, isKnown } = steplap.numbers;
+  const make = steplap.make, { percent, full, isKnown } = steplap.numbers;
   const first = 8, firstOfSeveral = 6, firstOfOthers = 3; // rows shown before the reader asks for more
   const longest = 1.6; // of the limit; longer bars are cut off with an arrow
 
-  // Results of earlier versions do not mark the utilisations of criteria; these have a limit.
-  const isJudged = (u) => u.is_judged ?? isKnown(u.limit);
+  const { isJudged } = steplap.overview;
   const isSlip = (u) => u.beyond && !isKnown(u.value) && u.share === 1; // shown in words instead of two equal numbers
   // A utilisation without criterion has no alarm colour, however large it is.
   const stateOf = (u) => (!isJudged(u) ? 'plain' : u.beyond || u.share > 1 ? 'bad' : u.share >= 0.7 ? 'warn' : 'good');
@@ -14,10 +13,16 @@ steplap.bars = (() => {
   // Returns the subject of a bar without its name: kind of element, kind of limit and place in the reference pose; null if it has no
   // element.
   function subjectOf(u, run) {
-    const element = run.drawing.elements.filter((e) => (u.channel || '').startsWith(`${e.name}.`)).sort((a, b) => b.name.length - a.name.length)[0], place = element && placeOf(element, run);
+    const element =
+            run.drawing.elements.filter((e) => (u.channel || '').startsWith(`${e.name}.`)).sort((a, b) => b.name.length - a.name.length)[0],
+          place = element && placeOf(element, run);
     if (!place) return null;
-    const body = run.drawing.bodies.find((b) => b.name === place.body), aspect = u.name.startsWith(element.name) ? u.name.slice(element.name.length) : '';
-    return { what: [element.kind, u.channel.slice(element.name.length), aspect].join('\n'), at: steplap.geometry.apply((body && body.pose) || [0, 0, 0], place.point) };
+    const body = run.drawing.bodies.find((b) => b.name === place.body),
+          aspect = u.name.startsWith(element.name) ? u.name.slice(element.name.length) : '';
+    return {
+      what: [element.kind, u.channel.slice(element.name.length), aspect].join('\n'),
+      at: steplap.geometry.apply((body && body.pose) || [0, 0, 0], place.point)
+    };
   }
   // Returns the element's own place, that of its limb, or that of the first contact that it brakes; undefined if there is none.
   function placeOf(element, run) {
@@ -32,15 +37,20 @@ steplap.bars = (() => {
   };
   // Pairs rows that exist in some runs only by place, if the match is unique.
   function pairByPlace(rows, runs) {
-    const near = 0.01 * Math.max(...runs.map(sizeOf)), subjects = rows.map((row) => row.entries.map((u, k) => (u ? subjectOf(u, runs[k]) : null)));
-    const isSame = (i, j) => rows[i].entries.every((u, k) => !u || !rows[j].entries[k]) && subjects[i].some((a) => a && subjects[j].some((b) => b && a.what === b.what && steplap.geometry.length(steplap.geometry.minus(a.at, b.at)) <= near));
+    const near = 0.01 * Math.max(...runs.map(sizeOf)),
+          subjects = rows.map((row) => row.entries.map((u, k) => (u ? subjectOf(u, runs[k]) : null)));
+    const isSame = (i, j) => rows[i].entries.every((u, k) => !u || !rows[j].entries[k]) &&
+      subjects[i].some(
+        (a) => a && subjects[j].some((b) => b && a.what === b.what && steplap.geometry.length(steplap.geometry.minus(a.at, b.at)) <= near));
     const gone = new Set();
     rows.forEach((row, i) => {
       if (gone.has(i) || row.entries.every(Boolean)) return;
       const found = rows.map((_, j) => j).filter((j) => j !== i && !gone.has(j) && isSame(i, j));
       const back = found.length === 1 ? rows.map((_, j) => j).filter((j) => j !== found[0] && !gone.has(j) && isSame(found[0], j)) : [];
       if (back.length !== 1) return;
-      rows[found[0]].entries.forEach((u, k) => { if (u) row.entries[k] = u; });
+      rows[found[0]].entries.forEach((u, k) => {
+        if (u) row.entries[k] = u;
+      });
       gone.add(found[0]);
     });
     return rows.filter((_, i) => !gone.has(i));
@@ -82,11 +92,20 @@ steplap.bars = (() => {
   }
   function barOf(u, scale, run, isOne, onChoose) {
     const share = size(u), isCut = share > scale, length = Math.min(share, scale) / scale;
-    const bar = make('span', { class: `bar ${stateOf(u)}${isCut ? ' cut' : ''}`, style: `width:${(100 * length).toFixed(3)}%`, 'data-share': String(u.share) });
+    const bar = make('span',
+      { class: `bar ${stateOf(u)}${isCut ? ' cut' : ''}`, style: `width:${(100 * length).toFixed(3)}%`, 'data-share': String(u.share) });
     const track = make('span', { class: 'track' }, bar, make('span', { class: 'limit', style: `left:${(100 / scale).toFixed(3)}%` }));
-    const button = make('button', { type: 'button', class: 'utilisation', 'data-channel': u.channel || '', 'data-at': isKnown(u.at) ? String(u.at) : '',
-      title: [u.text, `value ${full(u.value, u.unit)}`, `limit ${full(u.limit, u.unit)}`, isKnown(u.at) ? `at ${full(u.at, 's')}` : ''].filter(Boolean).join('\n') },
-    make('span', { class: 'who' }, isOne ? u.name : run.name), make('span', { class: 'of-limit' }, ofLimit(u)), make('span', { class: `percent ${stateOf(u)}` }, percent(u.share, u.error)), track);
+    const button = make('button', {
+      type: 'button',
+      class: 'utilisation',
+      'data-channel': u.channel || '',
+      'data-at': isKnown(u.at) ? String(u.at) : '',
+      title: [u.text, `value ${full(u.value, u.unit)}`, `limit ${full(u.limit, u.unit)}`, isKnown(u.at) ? `at ${full(u.at, 's')}` : '']
+               .filter(Boolean)
+               .join('\n')
+    },
+      make('span', { class: 'who' }, isOne ? u.name : run.name), make('span', { class: 'of-limit' }, ofLimit(u)),
+      make('span', { class: `percent ${stateOf(u)}` }, percent(u.share, u.error)), track);
     button.addEventListener('click', () => onChoose(u, run));
     return button;
   }
@@ -95,14 +114,18 @@ steplap.bars = (() => {
     const rows = rowsOf(runs), isOne = runs.length === 1, seen = isOne ? first : firstOfSeveral;
     box.hidden = !rows.length;
     if (!rows.length) return;
-    const isOfCriterion = (row) => row.entries.some((u) => u && isJudged(u)), criteria = rows.filter(isOfCriterion), others = rows.filter((row) => !isOfCriterion(row));
+    const isOfCriterion = (row) => row.entries.some((u) => u && isJudged(u)), criteria = rows.filter(isOfCriterion),
+          others = rows.filter((row) => !isOfCriterion(row));
     const worst = Math.max(...rows.map((row) => Math.max(...row.entries.filter(Boolean).map(size))));
     const scale = Math.min(longest, Math.max(1.04, 1.02 * worst));
-    const list = (some) => make('ul', { class: 'bars' }, ...some.map((row) => make('li', {}, ...(isOne ? [] : [headOf(row, runs)]),
-      ...row.entries.map((u, k) => (u ? barOf(u, scale, runs[k], isOne, onChoose) : '')).filter(Boolean))));
+    const list = (some) => make('ul', { class: 'bars' },
+      ...some.map((row) => make('li', {}, ...(isOne ? [] : [headOf(row, runs)]),
+                    ...row.entries.map((u, k) => (u ? barOf(u, scale, runs[k], isOne, onChoose) : '')).filter(Boolean))));
     const put = (heading, some, most) => {
       if (!some.length) return;
-      box.append(make('h2', {}, heading), make('p', { class: 'note scale-note', style: `--limit:${(100 / scale).toFixed(3)}%` }, make('span', {}, 'limit')), list(some.slice(0, most)));
+      box.append(make('h2', {}, heading),
+        make('p', { class: 'note scale-note', style: `--limit:${(100 / scale).toFixed(3)}%` }, make('span', {}, 'limit')),
+        list(some.slice(0, most)));
       if (some.length > most) box.append(make('details', {}, make('summary', {}, `${some.length - most} more`), list(some.slice(most))));
     };
     put('How near to the limits', criteria, seen);

@@ -70,9 +70,10 @@
     // Returns the lines of a body (bars, an outline of two points, struts) as [from, to, half of the width in pixels].
     linesOf(body) {
       if (!body.lines)
-        body.lines = [...body.segments.map(([x0, y0, x1, y1, thickness]) => [[x0, y0], [x1, y1], 0.5 * (thickness || 0)]),
-          ...(body.outline.length === 2 ? [[...body.outline, 0]] : []),
-          ...this.strutsOf(body).map(([a, b]) => [a, b, 0])];
+        body.lines = [
+          ...body.segments.map(([x0, y0, x1, y1, thickness]) => [[x0, y0], [x1, y1], 0.5 * (thickness || 0)]),
+          ...(body.outline.length === 2 ? [[...body.outline, 0]] : []), ...this.strutsOf(body).map(([a, b]) => [a, b, 0])
+        ];
       return body.lines;
     },
     isOnLine(body, p) {
@@ -113,6 +114,7 @@
     // Returns true if the whole box is on the visible body or, if `isBeside`, on no body.
     isNameClear(name, box, isBeside, pose) {
       if (box[0] < 2 || box[1] < 2 || box[2] > this.width - 2 || box[3] > this.height - this.footHeight() - 4) return false;
+      if (this.lensBoxes().some((lens) => overlap(box, lens, 2))) return false;
       return grid(box[0], box[2], 5).every((x) => grid(box[1], box[3], 3).every((y) => {
         const rank = this.rankOf(name, [x, y], pose);
         return isBeside ? rank === 1 : rank === 0 || rank === 2;

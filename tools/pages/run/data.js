@@ -42,7 +42,8 @@ steplap.data = (() => {
     let low = 0, high = times.length;
     while (low < high) {
       const middle = (low + high) >> 1;
-      if (times[middle] <= t) low = middle + 1; else high = middle;
+      if (times[middle] <= t) low = middle + 1;
+      else high = middle;
     }
     return low - 1;
   }
@@ -85,7 +86,8 @@ steplap.data = (() => {
       for (const pattern of patterns) {
         const text = pattern.replace(/[.+^${}()|[\]\\]/g, '\\$&').replace(/\*/g, '.*').replace(/\?/g, '.');
         const expression = new RegExp('^' + text + '$', 's');
-        for (const name of this.channels.keys()) if (expression.test(name)) found.push(name);
+        for (const name of this.channels.keys())
+          if (expression.test(name)) found.push(name);
       }
       return found;
     }
@@ -123,9 +125,12 @@ steplap.data = (() => {
 
   // Returns one interface per corner of the step-lap joints, because a core has many equal ones.
   function corners(run) {
-    const cores = run.drawing.cores || [], cornerOf = (s) => (cores.some((core) => s.name.startsWith(`${core.name}: `)) ? s.name.replace(/(, packets? .*| \d+)$/, '') : s.name);
+    const cores = run.drawing.cores || [],
+          cornerOf = (s) =>
+            (cores.some((core) => s.name.startsWith(`${core.name}: `)) ? s.name.replace(/(, packets? .*| \d+)$/, '') : s.name);
     const found = new Map();
-    for (const sheet of run.drawing.sheets) if (!found.has(cornerOf(sheet))) found.set(cornerOf(sheet), sheet);
+    for (const sheet of run.drawing.sheets)
+      if (!found.has(cornerOf(sheet))) found.set(cornerOf(sheet), sheet);
     return [...found.values()];
   }
 
@@ -136,8 +141,21 @@ steplap.data = (() => {
   // A run that consists of a drawing only, shown in the given pose.
   const still = (name, drawing) => new Run({ name, drawing, summary: { extremes: {} }, events: [], channels: [], poseOf: () => null });
   const runs = raw.runs.map((r) => new Run(r));
-  return { program: raw.program, modes: raw.modes, loadCases: raw.load_cases, still, runs,
-    Run, indexBefore, scaleFor, quantity, plain, pretty, corners, unique };
+  return {
+    program: raw.program,
+    modes: raw.modes,
+    loadCases: raw.load_cases,
+    still,
+    runs,
+    Run,
+    indexBefore,
+    scaleFor,
+    quantity,
+    plain,
+    pretty,
+    corners,
+    unique
+  };
 })();
 
 // Creates an element of the page. Strings are added as text, never as markup.
@@ -145,7 +163,8 @@ steplap.make = (name, attributes = {}, ...children) => {
   const isSvg = steplap.make.svg.has(name);
   const element = isSvg ? document.createElementNS('http://www.w3.org/2000/svg', name) : document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-  for (const c of children) element.append(c instanceof Node ? c : String(c)); // appended one by one, since there may be too many for one call
+  for (const c of children)
+    element.append(c instanceof Node ? c : String(c)); // appended one by one, since there may be too many for one call
   return element;
 };
 steplap.make.svg = new Set(['svg', 'g', 'path', 'polygon', 'line', 'circle', 'rect', 'text', 'title', 'tspan', 'clipPath']);

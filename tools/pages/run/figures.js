@@ -14,8 +14,24 @@ steplap.figures = (() => {
   }
   const isFlatIn = (runs, name) => runs.every((run) => !run.channel(name) || isFlat(run, name));
 
-  const titles = { force: 'Forces', tension: 'Tensions', couple: 'Couples', reaction: 'Reactions', friction: 'Friction forces', share: 'Shares of what friction holds', slide: 'Slides', margin: 'Margins of the joints', p_req: 'Pressures that the joints need',
-    theta: 'Angles', x: 'Horizontal positions', y: 'Vertical positions', ax: 'Horizontal accelerations', ay: 'Vertical accelerations', gap: 'Gaps', slid_share: 'Slid shares of the overlaps' };
+  const titles = {
+    force: 'Forces',
+    tension: 'Tensions',
+    couple: 'Couples',
+    reaction: 'Reactions',
+    friction: 'Friction forces',
+    share: 'Shares of what friction holds',
+    slide: 'Slides',
+    margin: 'Margins of the joints',
+    p_req: 'Pressures that the joints need',
+    theta: 'Angles',
+    x: 'Horizontal positions',
+    y: 'Vertical positions',
+    ax: 'Horizontal accelerations',
+    ay: 'Vertical accelerations',
+    gap: 'Gaps',
+    slid_share: 'Slid shares of the overlaps'
+  };
   // Titles distinguish forces by the element that transmits them.
   function titleOf(run, name) {
     const ending = endingOf(name), element = run.drawing.elements.find((e) => `${e.name}.${ending}` === name);
@@ -32,15 +48,22 @@ steplap.figures = (() => {
     }
     const count = new Map();
     for (const g of groups.values()) count.set(g.title, (count.get(g.title) || 0) + 1);
-    return [...groups.values()].slice(0, limit).map((g) => ({ name: count.get(g.title) > 1 ? `${g.title}, ${g.unit || 'shares'}` : g.title, title: '',
-      channels: g.channels.slice(0, mostCurves).map((name) => name.replace(/[*?]/g, '?')), bounds: [] }));
+    return [...groups.values()].slice(0, limit).map((g) => ({
+      name: count.get(g.title) > 1 ? `${g.title}, ${g.unit || 'shares'}` : g.title,
+      title: '',
+      channels: g.channels.slice(0, mostCurves).map((name) => name.replace(/[*?]/g, '?')),
+      bounds: []
+    }));
   }
   function automatic(runs) {
     const endings = ['slide', 'friction', 'force', 'couple', 'tension', 'reaction', 'margin', 'p_req', 'theta', 'x', 'y'], names = [];
     for (const ending of endings) {
       const found = steplap.data.unique(runs.map((r) => r.matching([`*.${ending}`]))).filter((name) => !isFlatIn(runs, name));
       // Channels with the largest range come first, since there may be more than a figure can show.
-      const reach = (name) => Math.max(...runs.map((r) => { const e = r.summary.extremes[name]; return e ? e.max - e.min || 0 : 0; }));
+      const reach = (name) => Math.max(...runs.map((r) => {
+        const e = r.summary.extremes[name];
+        return e ? e.max - e.min || 0 : 0;
+      }));
       names.push(...found.sort((a, b) => reach(b) - reach(a)));
     }
     return grouped(runs, names, most);
@@ -50,9 +73,11 @@ steplap.figures = (() => {
     return grouped(runs, names.filter((name) => !shown.has(name) && !isFlatIn(runs, name)), mostAsked);
   }
   // Returns one figure per plot of the models, otherwise one per informative kind of channel.
-  function of(runs) {
+  function of (runs) {
     const own = new Map();
-    for (const run of runs) for (const plot of run.drawing.plots) if (!own.has(plot.name)) own.set(plot.name, plot);
+    for (const run of runs)
+      for (const plot of run.drawing.plots)
+        if (!own.has(plot.name)) own.set(plot.name, plot);
     const given = own.size ? [...own.values()] : [];
     const shown = new Set(runs.flatMap((run) => given.flatMap((plot) => run.matching(plot.channels))));
     const first = asked(runs, shown), names = new Set(first.map((f) => f.name));

@@ -11,7 +11,9 @@ steplap.forms = (() => {
     if (body.outline.length > 2) ring(body.outline);
     if (body.outline.length === 2) edges.push(body.outline);
     for (const points of [...body.polygons, ...(body.holes || [])]) ring(points);
-    for (const [x, y, r] of body.circles) ring(Array.from({ length: sides }, (_, k) => [x + r * Math.cos((2 * Math.PI * k) / sides), y + r * Math.sin((2 * Math.PI * k) / sides)]));
+    for (const [x, y, r] of body.circles)
+      ring(Array.from(
+        { length: sides }, (_, k) => [x + r * Math.cos((2 * Math.PI * k) / sides), y + r * Math.sin((2 * Math.PI * k) / sides)]));
     for (const [x0, y0, x1, y1] of body.segments) edges.push([[x0, y0], [x1, y1]]);
     body.edges = edges;
     return edges;
@@ -38,13 +40,17 @@ steplap.forms = (() => {
   }
   function isWithin(ring, p) {
     let is = false;
-    ring.forEach((a, i) => { const b = ring[(i + 1) % ring.length]; if (a[1] > p[1] !== b[1] > p[1] && p[0] < a[0] + ((b[0] - a[0]) * (p[1] - a[1])) / (b[1] - a[1])) is = !is; });
+    ring.forEach((a, i) => {
+      const b = ring[(i + 1) % ring.length];
+      if (a[1] > p[1] !== b[1] > p[1] && p[0] < a[0] + ((b[0] - a[0]) * (p[1] - a[1])) / (b[1] - a[1])) is = !is;
+    });
     return is;
   }
   // Returns true for points inside the outline, including holes.
   function isInside(body, p) {
     const within = (ring) => isWithin(ring, p);
-    return (body.outline.length > 2 && within(body.outline)) || body.polygons.some(within) || body.circles.some(([x, y, r]) => length(minus(p, [x, y])) <= r * (1 + 1e-6));
+    return (body.outline.length > 2 && within(body.outline)) || body.polygons.some(within) ||
+      body.circles.some(([x, y, r]) => length(minus(p, [x, y])) <= r * (1 + 1e-6));
   }
   const isSolidAt = (body, p) => isInside(body, p) && !(body.holes || []).some((hole) => isWithin(hole, p));
   return { edgesOf, crossings, nearest, isInside, isSolidAt };

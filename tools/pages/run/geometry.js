@@ -20,7 +20,8 @@ steplap.geometry = (() => {
     if (!corners.length) return null;
     const along = [n[1], -n[0]], height = (p) => dot(n, minus(p, origin));
     const first = corners.reduce((least, p) => (height(p) < height(least) ? p : least));
-    const touching = corners.filter((p) => height(p) - height(first) <= 0.02 * Math.abs(dot(along, minus(p, first)))).map((p) => dot(along, p));
+    const touching =
+      corners.filter((p) => height(p) - height(first) <= 0.02 * Math.abs(dot(along, minus(p, first)))).map((p) => dot(along, p));
     const low = Math.max(Math.min(...touching), ends[0]), high = Math.min(Math.max(...touching), ends[1]);
     return { gap: height(first), n, at: add(scaled(n, dot(n, origin)), scaled(along, 0.5 * (low + high))) };
   };
@@ -35,7 +36,7 @@ steplap.geometry = (() => {
         if (length(minus(q, p)) === 0) return;
         const n = dot([d[1], -d[0]], minus(p, middle)) > 0 ? [d[1], -d[0]] : [-d[1], d[0]], along = [n[1], -n[0]];
         const found = lowest(n, p, other, [dot(along, p), dot(along, q)].sort((x, y) => x - y));
-        if (!best || found.gap > best.gap) best = { ...found, n: scaled(n, sign) };
+        if (!best || found.gap > best.gap) best = {...found, n: scaled(n, sign) };
       });
     }
     return best;
@@ -45,16 +46,27 @@ steplap.geometry = (() => {
 
 // Bounding box of points.
 steplap.Box = class Box {
-  constructor() { this.low = [Infinity, Infinity]; this.high = [-Infinity, -Infinity]; }
+  constructor() {
+    this.low = [Infinity, Infinity];
+    this.high = [-Infinity, -Infinity];
+  }
   take(p, reach = 0) {
-    for (const i of [0, 1]) { this.low[i] = Math.min(this.low[i], p[i] - reach); this.high[i] = Math.max(this.high[i], p[i] + reach); }
+    for (const i of [0, 1]) {
+      this.low[i] = Math.min(this.low[i], p[i] - reach);
+      this.high[i] = Math.max(this.high[i], p[i] + reach);
+    }
     return this;
   }
   nearest(p) { return p.map((v, i) => Math.min(Math.max(v, this.low[i]), this.high[i])); }
   get isEmpty() { return !(this.low[0] <= this.high[0] && this.low[1] <= this.high[1]); }
   get span() { return [this.high[0] - this.low[0], this.high[1] - this.low[1]]; }
   get middle() { return [0.5 * (this.low[0] + this.high[0]), 0.5 * (this.low[1] + this.high[1])]; }
-  joined(other) { const box = new Box(); for (const b of [this, other]) if (!b.isEmpty) box.take(b.low).take(b.high); return box; }
+  joined(other) {
+    const box = new Box();
+    for (const b of [this, other])
+      if (!b.isEmpty) box.take(b.low).take(b.high);
+    return box;
+  }
 };
 
 // Returns the ends of an edge on which wheels roll, in order. `sizes` are radius, x, y, x, y, thickness, and further x, y of a road.

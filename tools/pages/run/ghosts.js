@@ -11,21 +11,20 @@
       const group = make('g', { class: 'ghost', 'data-ghost-of': body.name }, ...shapes);
       this.ghostLayer.append(group);
       this.updaters.push((t, pose) => {
-        const at = this.ghostPose(body.name, pose), now = pose(body.name);
-        const isSeen = body.points.some((p) => length(minus(apply(at, p), apply(now, p))) * this.scale > least);
-        group.style.display = isSeen && !this.isLeftBehind(body.name) ? '' : 'none';
-        if (isSeen) this.putAt(group, at);
+        const isSeen = this.shiftOf(body, pose) * this.scale > least;
+        group.style.display = isSeen ? '' : 'none';
+        if (isSeen) this.putAt(group, this.ghostPose(body.name, pose));
       });
     },
-    // Returns true if the ghost of a body is on ground that passes by.
-    isLeftBehind(name) {
-      const journey = this.seenFrom === 'ground' ? null : this.journey();
-      return Boolean(journey) && !journey.carried && this.isHeld(this.carrierOf(name));
+    // Returns the distance at which a body is drawn from its ghost, m.
+    shiftOf(body, pose) {
+      const at = this.ghostPose(body.name, pose), now = pose(body.name);
+      return Math.max(0, ...body.points.map((p) => length(minus(apply(at, p), apply(now, p)))));
     },
     // Moves a drawing in body axes to the body's pose.
     putAt(group, [x, y, angle]) {
       const c = this.scale * Math.cos(angle), s = this.scale * Math.sin(angle), [sx, sy] = this.toScreen([x, y]);
-      group.setAttribute('transform', `matrix(${c} ${-s} ${-s} ${-c} ${sx} ${sy})`);
+      group.setAttribute('transform', `matrix(${c} ${- s} ${- s} ${- c} ${sx} ${sy})`);
     },
   });
 })();

@@ -6,7 +6,15 @@
   const most = 30, mostInWords = 5; // elements
   const size = 16; // pixels of a sign
   const grave = ['break', 'apart', 'open', 'slip'];
-  const past = { lifts: 'lifted', opens: 'opened', breaks: 'broke', 'comes apart': 'came apart', slips: 'slipped', tips: 'tips', 'loses an interface': 'lost an interface' };
+  const past = {
+    lifts: 'lifted',
+    opens: 'opened',
+    breaks: 'broke',
+    'comes apart': 'came apart',
+    slips: 'slipped',
+    tips: 'tips',
+    'loses an interface': 'lost an interface'
+  };
   const onFirst = new Set(['contact', 'faces', 'touch', 'edge_touch']); // kinds whose first place belongs to the part that lifts
 
   Object.assign(steplap.Scene.prototype, {
@@ -16,20 +24,28 @@
       this.moved = new Set(names || []);
       for (const { group } of this.happenings || []) group.remove();
       const wordOf = (name) => story.find((entry) => entry.what in past && (entry.who || []).includes(name));
-      const found = [...this.moved].map((name) => ({ name, told: wordOf(name), place: this.happeningPlace(name) })).filter((h) => h.place && steplap.signs);
-      const isFew = found.length <= mostInWords, isGrave = ({ name }) => this.run.events.some((e) => e[1] === name && ['break', 'apart'].includes(e[4]));
-      this.happenings = (isFew ? found : found.filter(isGrave)).slice(0, most).map((h) => ({ ...h, isInWords: isFew, ...this.happeningMark(h.name) }));
+      const found = [...this.moved]
+                      .map((name) => ({ name, told: wordOf(name), place: this.happeningPlace(name) }))
+                      .filter((h) => h.place && steplap.signs);
+      const isFew = found.length <= mostInWords,
+            isGrave = ({ name }) => this.run.events.some((e) => e[1] === name && ['break', 'apart'].includes(e[4]));
+      this.happenings =
+        (isFew ? found : found.filter(isGrave)).slice(0, most).map((h) => ({...h, isInWords: isFew, ...this.happeningMark(h.name) }));
     },
     // Returns the first place or the middle of the places of an element, or the centre of gravity of a body that tips.
     happeningPlace(name) {
       const element = this.byName.get(name), shapes = element ? this.elements.find((e) => e.name === name)?.shapes || [] : [];
       if (!element) return this.bodies.has(name) ? (pose) => pose(name).slice(0, 2) : null;
-      if (shapes.some((shape) => shape.type === 'friction') && !this.run.events.some((e) => e[1] === name && ['break', 'apart', 'open'].includes(e[4]))) return null; // sliding friction has its own words
-      const at = (shapes[0] && shapes[0].at.length ? shapes[0].at : element.at || []), places = shapes[0] && onFirst.has(shapes[0].type) ? at.slice(0, 1) : at;
+      if (shapes.some((shape) => shape.type === 'friction') &&
+        !this.run.events.some((e) => e[1] === name && ['break', 'apart', 'open'].includes(e[4])))
+        return null; // sliding friction has its own words
+      const at = (shapes[0] && shapes[0].at.length ? shapes[0].at : element.at || []),
+            places = shapes[0] && onFirst.has(shapes[0].type) ? at.slice(0, 1) : at;
       return places.length ? (pose) => scaled(places.map((p) => this.placed(p, pose)).reduce(add), 1 / places.length) : null;
     },
     happeningMark(name) {
-      const text = make('text', { class: 'state-text slips' }), group = make('g', { class: 'happening', 'data-happened': name }, make('title', {}, name));
+      const text = make('text', { class: 'state-text slips' }),
+            group = make('g', { class: 'happening', 'data-happened': name }, make('title', {}, name));
       group.append(text);
       this.textLayer.append(group);
       return { group, text, sign: null };
@@ -57,7 +73,8 @@
           group.append(h.sign);
         }
         const words = text.textContent ? 8.4 * text.textContent.length + 6 : 0, width = size + words, [x, y] = this.toScreen(h.place(pose));
-        const place = this.symbols.room([x, y], [width, size + 2], steps(width)) || this.symbols.room([x, y], [size, size + 2], steps(size));
+        const place = this.symbols.room([x, y], [width, size + 2], steplap.waysAround(width)) ||
+          this.symbols.room([x, y], [size, size + 2], steplap.waysAround(size));
         const isFull = place && words > 0 && place.size[0] === width;
         if (!isFull) text.textContent = '';
         const at = place ? place.at : [x, y];
@@ -67,10 +84,4 @@
       }
     },
   });
-  // Candidate shifts of a text: above, next to it, below, then farther away.
-  function steps(width) {
-    const ways = [];
-    for (const dy of [-18, 18, -36, 36, 0, -54, 54, -72, 72, -90, 90]) for (const dx of [0, 0.6, -0.6]) if (dx || dy) ways.push([dx * width, dy]);
-    return ways;
-  }
 })();

@@ -1,9 +1,12 @@
 // Draws the sheets of a step-lap joint where they overlap, strongly magnified across the joint line.
 steplap.Inset = (() => {
-  const make = steplap.make, { minus, scaled, length, unit, apply, relative } = steplap.geometry;
+  const make = steplap.make, { minus, length, unit, apply, relative } = steplap.geometry;
   const width = 246, height = 112;
 
-  const area = (ring) => ring.reduce((sum, p, i) => { const q = ring[(i + 1) % ring.length]; return sum + 0.5 * (p[0] * q[1] - q[0] * p[1]); }, 0);
+  const area = (ring) => ring.reduce((sum, p, i) => {
+    const q = ring[(i + 1) % ring.length];
+    return sum + 0.5 * (p[0] * q[1] - q[0] * p[1]);
+  }, 0);
   const counterClockwise = (ring) => (area(ring) < 0 ? [...ring].reverse() : ring);
   const isConvex = (ring) => ring.every((p, i) => {
     const q = ring[(i + 1) % ring.length], r = ring[(i + 2) % ring.length];
@@ -48,7 +51,8 @@ steplap.Inset = (() => {
       this.parts.overlap.setAttribute('clip-path', `url(#${id})`);
       this.state = make('strong', { class: 'joint-state' });
       this.figures = make('div', { class: 'joint-figures' });
-      this.box = make('div', { class: 'inset', 'data-joint': sheet.joint }, make('div', {}, `${sheet.name}: `, this.state), this.svg, this.figures);
+      this.box =
+        make('div', { class: 'inset', 'data-joint': sheet.joint }, make('div', {}, `${sheet.name}: `, this.state), this.svg, this.figures);
       this.margin = run.channel(`${sheet.joint}.margin`);
       this.pressure = run.channel(`${sheet.joint}.p_req`);
     }
@@ -58,19 +62,28 @@ steplap.Inset = (() => {
       const lap = isConvex(this.yoke) ? clipped(limb, this.yoke) : isConvex(limb) ? clipped(this.yoke, limb) : [];
       const ring = lap.length > 2 ? lap : this.yoke;
       let longest = [1, 0];
-      ring.forEach((p, i) => { const d = minus(ring[(i + 1) % ring.length], p); if (length(d) > length(longest) || i === 0) longest = d; });
+      ring.forEach((p, i) => {
+        const d = minus(ring[(i + 1) % ring.length], p);
+        if (length(d) > length(longest) || i === 0) longest = d;
+      });
       this.along = unit(longest);
       this.across = [-this.along[1], this.along[0]];
-      const u = ring.map((p) => p[0] * this.along[0] + p[1] * this.along[1]), w = ring.map((p) => p[0] * this.across[0] + p[1] * this.across[1]);
+      const u = ring.map((p) => p[0] * this.along[0] + p[1] * this.along[1]),
+            w = ring.map((p) => p[0] * this.across[0] + p[1] * this.across[1]);
       this.middle = [0.5 * (Math.min(...u) + Math.max(...u)), 0.5 * (Math.min(...w) + Math.max(...w))];
       this.scales = [(0.9 * width) / (Math.max(...u) - Math.min(...u)), (0.3 * height) / Math.max(Math.max(...w) - Math.min(...w), 1e-9)];
     }
     path(rings) { return rings.map((ring) => this.loop(ring)).join(''); }
     loop(ring) {
-      return 'M' + ring.map((p) => {
-        const u = p[0] * this.along[0] + p[1] * this.along[1] - this.middle[0], w = p[0] * this.across[0] + p[1] * this.across[1] - this.middle[1];
-        return `${(width / 2 + u * this.scales[0]).toFixed(2)} ${(height / 2 - w * this.scales[1]).toFixed(2)}`;
-      }).join('L') + 'Z';
+      return 'M' +
+        ring
+          .map((p) => {
+            const u = p[0] * this.along[0] + p[1] * this.along[1] - this.middle[0],
+                  w = p[0] * this.across[0] + p[1] * this.across[1] - this.middle[1];
+            return `${(width / 2 + u * this.scales[0]).toFixed(2)} ${(height / 2 - w * this.scales[1]).toFixed(2)}`;
+          })
+          .join('L') +
+        'Z';
     }
     show(t) {
       const { scene, sheet } = this;

@@ -11,10 +11,18 @@
       this.motionText = make('text', { class: 'note-text motion-text', tabindex: '0', role: 'button' });
       this.seenText = make('text', { class: 'note-text seen-text' });
       this.legendLayer.append(make('title', {}, ''), this.scaleBar, this.scaleText, this.motionText, this.seenText);
-      const toggle = (event) => { event.stopPropagation(); this.toggleMagnification(); };
+      const toggle = (event) => {
+        event.stopPropagation();
+        this.toggleMagnification();
+      };
       this.motionText.addEventListener('click', toggle);
       for (const name of ['pointerdown', 'dblclick']) this.motionText.addEventListener(name, (event) => event.stopPropagation());
-      this.motionText.addEventListener('keydown', (event) => { if (event.key === 'Enter' || event.key === ' ') { event.preventDefault(); toggle(event); } });
+      this.motionText.addEventListener('keydown', (event) => {
+        if (event.key === 'Enter' || event.key === ' ') {
+          event.preventDefault();
+          toggle(event);
+        }
+      });
     },
     // Switches between true scale and magnification by the selection field of the page.
     toggleMagnification() {
@@ -25,8 +33,13 @@
     },
     showLegend(t = 0) {
       const wanted = Math.min(130, 0.25 * this.width) / this.scale, power = 10 ** Math.floor(Math.log10(wanted));
-      const size = power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1), width = size * this.scale, y = this.height - 9, left = 10;
-      this.scaleBar.setAttribute('d', `M${left} ${y - 4}V${y + 4}M${left} ${y}H${(left + width).toFixed(1)}M${(left + width).toFixed(1)} ${y - 4}V${y + 4}`);
+      const size = power *
+        (wanted / power >= 5      ? 5
+            : wanted / power >= 2 ? 2
+                                  : 1),
+            width = size * this.scale, y = this.height - 9, left = 10;
+      this.scaleBar.setAttribute(
+        'd', `M${left} ${y - 4}V${y + 4}M${left} ${y}H${(left + width).toFixed(1)}M${(left + width).toFixed(1)} ${y - 4}V${y + 4}`);
       this.put(this.scaleText, steplap.data.quantity(size, 'm', 3), left + width + 6, y + 4, 'start');
       const motion = this.motionNote(this.width < 520);
       this.put(this.motionText, motion, this.width - 10, y + 4, 'end');
@@ -59,7 +72,9 @@
     },
     put(text, content, x, y, anchor) {
       text.textContent = content;
-      text.setAttribute('x', x.toFixed(1)); text.setAttribute('y', y.toFixed(1)); text.setAttribute('text-anchor', anchor);
+      text.setAttribute('x', x.toFixed(1));
+      text.setAttribute('y', y.toFixed(1));
+      text.setAttribute('text-anchor', anchor);
     },
   });
 })();

@@ -1,56 +1,62 @@
-// Draws the loads at the instant shown: acceleration, speed or travel of a drive as an arrow with its value. The arrow is filled while the
-// load acts; before and after it is hollow and shows the largest value of the run.
+// Draws the loads (causes.js) at the instant shown: an arrow, or an arc for a rotation, with its value. It is filled while the load acts;
+// before and after it is hollow and shows the largest value of the run.
 (() => {
-  const make = steplap.make, { add, minus, scaled, length } = steplap.geometry;
-  const g = 9.80665; // m/s²
+  const make = steplap.make, { add, minus, scaled, dot, length } = steplap.geometry;
   const acting = 0.02; // of the largest value; smaller ones count as zero
   const least = 0.25; // of the largest arrow; shortest visible arrow
-  const onCentre = 1e-6; // of the machine's size: only at its centre of gravity the motion of a body equals its channels
-
-  const inG = (a) => `${steplap.data.plain(a / g, 2)}\u00a0g`;
-  const quantities = {
-    acceleration: { channels: ['ax', 'ay'], text: inG },
-    velocity: { channels: ['vx', 'vy'], text: (v) => steplap.data.quantity(v, 'm/s', 3) },
-    position: { channels: ['x', 'y'], isFromStart: true, text: (x) => steplap.data.quantity(x, 'm', 3) },
-  };
-  // Returns { at(t), peak, isBackward, text } of a drive along one axis against the ground; null if the results do not contain it.
-  function motionOf(scene, element, shape) {
-    const quantity = quantities[element.as], axis = Math.abs((shape.direction || [1, 0])[1]) > 0.7 ? 1 : 0, [driven, base] = shape.at;
-    const channel = quantity && scene.run.channel(`${driven.body}.${quantity.channels[axis]}`);
-    if (!channel || length(driven.point) > onCentre * scene.size || !base || !scene.isHeld(base.body)) return null;
-    const sign = Math.sign((shape.direction || [1, 0])[axis]) || 1, start = quantity.isFromStart ? channel.at(0) : 0;
-    const reaction = scene.run.channel(`${element.name}.reaction`), isReleased = (t) => Boolean(reaction) && reaction.at(t) === 0;
-    const at = (t) => (isReleased(t) ? 0 : sign * (channel.at(t) - start));
-    let largest = 0;
-    for (const t of channel.times) if (Math.abs(at(t)) > Math.abs(largest)) largest = at(t);
-    return { at, peak: Math.abs(largest), isBackward: largest < 0, text: quantity.text };
-  }
+  const longest = 4.5; // of a load's arrow, in sizes of symbols
+  const corner = [22, 26]; // pixels from the picture's corner: where an arrow of gravity begins
 
   Object.assign(steplap.Symbols.prototype, {
-    // Draws the load of a drive. Returns false if its value is unknown.
-    driven(element, shape, symbol) {
-      const { scene } = this, motion = motionOf(scene, element, shape);
-      if (!motion) return false;
-      if (!(motion.peak > 1e-9)) { symbol.remove(); return true; }
-      const place = this.frontOf(shape), text = make('text', { class: 'load-text', 'data-load': element.name });
-      symbol.classList.add('load');
-      scene.textLayer.append(text);
+    // What acts without an element of its own: speeds at the start, gravity.
+    loadsWithoutElement() {
+      for (const load of this.scene.causes())
+        if (!load.shape || !this.scene.byName.has(load.element.name)) this.acting(load);
+    },
+    // An arrow or an arc, with its text.
+    acting(load) {
+      const isArc = load.shape && load.shape.type === 'arc', style = (load.shape && load.shape.style) || 'drive';
+      const symbol = this.piece(load.element, { class: isArc ? `symbol arc load ${style}` : 'symbol drive load' });
+      const text = make('text', { class: 'load-text', 'data-load': load.element.name }),
+            place = isArc ? this.jointOf(load.shape) : this.loadPlace(load);
+      this.scene.textLayer.append(text);
       this.update((t, pose) => {
-        const value = motion.at(t), isActing = Math.abs(value) > acting * motion.peak;
-        const size = 4.5 * this.u * (isActing ? Math.max(least, Math.abs(value) / motion.peak) : 1);
-        const from = this.screen(place, pose), d = this.direction(shape, pose), far = add(from, scaled(d, size));
-        const isBackward = isActing ? value < 0 : motion.isBackward;
-        const [tail, tip] = isBackward ? [far, from] : [from, far], ahead = scaled(d, isBackward ? -1 : 1);
-        symbol.setAttribute('d', broadArrow(tail, tip, ahead, this.u));
+        const value = load.at(t), isActing = Math.abs(value) > acting * load.peak, isBackward = isActing ? value < 0 : load.isBackward;
         symbol.classList.toggle('acting', isActing);
-        const name = element.signal || element.name;
-        const words = isActing ? ` ${motion.text(Math.abs(value))}` : `, ${motion.text(motion.peak)} at most`;
-        text.textContent = `${name}${words}`;
-        const width = 8.2 * text.textContent.length, middle = scaled(add(tail, tip), 0.5);
-        const ways = [-16, 18, -32, 34, -48, 50, -66, 68];
-        this.put(text, middle, [width, 14], ways.map((dy) => [0, dy]));
+        text.textContent = this.loadText(load, value, isActing);
+        const at = load.isField ? corner : this.screen(place, pose), share = isActing ? Math.max(least, Math.abs(value) / load.peak) : 1;
+        const middle = isArc ? this.bend(symbol, at, load, pose, isBackward)
+                             : this.broaden(symbol, at, load, share, isActing ? t : load.peakAt, pose, isBackward);
+        const width = 8.2 * text.textContent.length;
+        this.put(text, middle, [width, 14], load.isField ? [[0.5 * width + this.u, 0]] : undefined);
       });
-      return true;
+    },
+    loadText({ element, text, peak, isField }, value, isActing) {
+      if (isField) return element.name;
+      return `${element.signal || element.name}${isActing ? ` ${text(Math.abs(value))}` : `, ${text(peak)} at most`}`;
+    },
+    // Drives and motors stand before what they move, forces where they act.
+    loadPlace({ shape, along }) { return !shape ? null
+                                    : along     ? shape.at[0]
+                                                : this.frontOf(shape); },
+    bend(symbol, at, load, pose, isBackward) {
+      symbol.setAttribute('d', this.turning(at, this.u, -pose(load.shape.at[0].body)[2], isBackward));
+      return at;
+    },
+    // Returns the middle of the arrow.
+    broaden(symbol, at, load, share, t, pose, isBackward) {
+      const { shape, along, isField } = load, size = longest * this.u * share;
+      const d = along ? this.forceDirection(along(t)) : this.direction(shape, pose);
+      // A force on a body comes from outside: it pulls where it leads away from the centre of gravity, and pushes elsewhere.
+      const isPush = along && !isField && dot(d, minus(at, this.screen({ body: shape.at[0].body, point: [0, 0] }, pose))) < -1;
+      const far = isPush ? minus(at, scaled(d, size)) : add(at, scaled(d, size)), isTurned = isPush || isBackward;
+      const [tail, tip] = isTurned ? [far, at] : [at, far];
+      symbol.setAttribute('d', broadArrow(tail, tip, scaled(d, isBackward ? -1 : 1), this.u));
+      return scaled(add(tail, tip), 0.5);
+    },
+    forceDirection(force) {
+      const d = [force[0], -force[1]];
+      return length(d) > 0 ? scaled(d, 1 / length(d)) : [0, 1];
     },
   });
   // Outline of a broad arrow, closed so that it can be filled.

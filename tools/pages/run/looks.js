@@ -6,7 +6,7 @@
   const apart = 38; // pixels between the dashes of a road or the sleepers of a track
   let clips = 0; // ids of clip paths are unique in the page
 
-  const rect = ([x, y], [w, h], style) => make('path', { class: style, d: `M${x - 0.5 * w} ${y - 0.5 * h}h${w}v${h}h${-w}Z` });
+  const rect = ([x, y], [w, h], style) => make('path', { class: style, d: `M${x - 0.5 * w} ${y - 0.5 * h}h${w}v${h}h${- w}Z` });
   const ring = (points) => 'M' + points.map((p) => p.join(' ')).join('L') + 'Z';
   const disc = ([cx, cy], r, style) => make('circle', { cx, cy, r, class: style });
 
@@ -34,9 +34,9 @@
   function tank(look, body) {
     const id = `tank-${clips++}`, low = Math.min(...body.outline.map((p) => p[1])), reach = 2 * body.reach;
     const inside = { 'clip-path': `url(#${id})` }, parts = [make('clipPath', { id }, make('path', { d: ring(body.outline) }))];
-    const oil = `M${-reach} ${low}H${reach}V${look.oil}H${-reach}Z`;
-    if (look.oil !== undefined) parts.push(make('path', { ...inside, class: 'oil', d: oil }));
-    return [...parts, make('path', { ...inside, class: 'wall', d: ring(body.outline), 'stroke-width': 2 * look.wall })];
+    const oil = `M${- reach} ${low}H${reach}V${look.oil}H${- reach}Z`;
+    if (look.oil !== undefined) parts.push(make('path', {...inside, class: 'oil', d: oil }));
+    return [...parts, make('path', {...inside, class: 'wall', d: ring(body.outline), 'stroke-width': 2 * look.wall })];
   }
 
   Object.assign(steplap.Scene.prototype, {

@@ -1,9 +1,10 @@
 // The moving machine: bodies of one run, drawn from drawing.json and the poses. symbols.js draws elements. Symbols have a constant size on
 // the screen (this.u) at any zoom; bodies have their true size.
 steplap.Scene = (() => {
-  const make = steplap.make, { add, minus, scaled, length, apply } = steplap.geometry, Box = steplap.Box;
+  const make = steplap.make, { add, minus, scaled, length, unit, apply } = steplap.geometry, Box = steplap.Box;
   const margin = 36; // for symbols, pixels
   const nearby = 0.75; // of the machine's size; bodies farther away leave the picture
+  const most = 6; // largest view, in sizes of the machine, that includes the instant at which the page opens
   const symbolSize = (width) => Math.min(11, Math.max(7, width / 70)); // pixels
 
   class Body {
@@ -13,8 +14,10 @@ steplap.Scene = (() => {
       const names = ['x', 'y', 'theta'].map((c) => run.channel(`${raw.name}.${c}`));
       this.channels = names.every(Boolean) && !raw.fixed ? names : null;
       // Points whose displacement is shown; of a circle its centre.
-      this.points = [...this.outline, ...steplap.partsOf(run, raw.name),
-        ...this.polygons.flat(), ...this.circles.map((c) => [c[0], c[1]]), ...this.segments.flatMap((s) => [[s[0], s[1]], [s[2], s[3]]])];
+      this.points = [
+        ...this.outline, ...steplap.partsOf(run, raw.name), ...this.polygons.flat(), ...this.circles.map((c) => [c[0], c[1]]),
+        ...this.segments.flatMap((s) => [[s[0], s[1]], [s[2], s[3]]])
+      ];
       this.isPoint = !this.points.length;
       this.isLookAlone = !this.isPoint && !this.outline.length && !this.circles.length && !this.segments.length && !this.polygons.length;
       if (this.isPoint) this.points.push([0, 0]);
@@ -33,7 +36,10 @@ steplap.Scene = (() => {
       if (!x || !speeds.every(Boolean)) return 0;
       const i = steplap.data.indexBefore(x.times, t), dt = x.times[i + 1] - x.times[i];
       if (i < 0 || i + 1 >= x.times.length || t - x.times[i] < 1e-6 * dt || x.times[i + 1] - t < 1e-6 * dt) return 0;
-      const off = [x, y].map((place, k) => { const [v0, v1] = [i, i + 1].map((row) => speeds[k].at(x.times[row])); return Math.abs(place.rest[i + 1] - place.rest[i] - 0.5 * dt * (v0 + v1)) + 0.125 * dt * Math.abs(v1 - v0); });
+      const off = [x, y].map((place, k) => {
+        const [v0, v1] = [i, i + 1].map((row) => speeds[k].at(x.times[row]));
+        return Math.abs(place.rest[i + 1] - place.rest[i] - 0.5 * dt * (v0 + v1)) + 0.125 * dt * Math.abs(v1 - v0);
+      });
       return length(off);
     }
     extend(box, pose) {
@@ -49,9 +55,15 @@ steplap.Scene = (() => {
       this.ground = new Body({ name: 'ground', fixed: true, ...run.drawing.ground }, run);
       this.limbs = new Map();
       this.yokes = new Set();
-      for (const e of run.drawing.elements) if (e.kind === 'step_lap_joint') { this.limbs.set(e.limb, e); this.yokes.add(e.active_part); }
+      for (const e of run.drawing.elements)
+        if (e.kind === 'step_lap_joint') {
+          this.limbs.set(e.limb, e);
+          this.yokes.add(e.active_part);
+        }
       // Results of earlier versions have a symbol instead of shapes.
-      this.elements = run.drawing.elements.filter((e) => e.symbol !== 'hidden').map((e) => (e.shapes ? e : { ...e, shapes: [{ type: e.symbol, at: e.at, direction: e.direction, quantity: 'force' }] }));
+      this.elements =
+        run.drawing.elements.filter((e) => e.symbol !== 'hidden')
+          .map((e) => (e.shapes ? e : {...e, shapes: [{ type: e.symbol, at: e.at, direction: e.direction, quantity: 'force' }] }));
       this.byName = new Map(run.drawing.elements.map((e) => [e.name, e]));
       this.view = { zoom: 1, shift: [0, 0] };
       this.withValues = false;
@@ -71,7 +83,9 @@ steplap.Scene = (() => {
     boxOf(pose) {
       const box = new Box();
       for (const body of this.bodies.values()) body.extend(box, pose(body.name));
-      for (const e of this.elements) for (const a of e.at) if (e.symbol !== 'contact' || a === e.at[0]) box.take(this.placed(a, pose));
+      for (const e of this.elements)
+        for (const a of e.at)
+          if (e.symbol !== 'contact' || a === e.at[0]) box.take(this.placed(a, pose));
       const own = new Box();
       if (!this.ground.isPoint) this.ground.extend(own, [0, 0, 0]);
       if (own.isEmpty) return box.isEmpty ? box.take([-1, -1]).take([1, 1]) : box;
@@ -93,7 +107,8 @@ steplap.Scene = (() => {
     }
     // Chooses standpoint and magnification, and the part of the plane that this needs.
     choose(seenFrom, magnification) {
-      this.seenFrom = seenFrom; this.magnification = magnification;
+      this.seenFrom = seenFrom;
+      this.magnification = magnification;
       this.poses = this.samples();
       const still = this.boxOf(this.look(0, seenFrom, magnification)), reach = nearby * Math.max(...still.span);
       const near = new Box().take(still.low, reach).take(still.high, reach), box = new Box().take(still.low).take(still.high);
@@ -103,6 +118,7 @@ steplap.Scene = (() => {
           body.extend(own, pose(body.name));
           for (const corner of [own.low, own.high]) box.take(near.nearest(corner));
         }
+      this.takeOpening(box, Math.max(...still.span));
       // Space for springs that carry a body from below.
       const isBelow = (s) => s.type === 'spring' && this.isTied(s) && this.isHeld(s.at[1].body) && Math.abs(s.direction[1]) > 0.7;
       const isCarried = this.elements.some((e) => e.shapes.some((s) => isBelow(s) && !this.wheelsOf(s.at[1].body).length));
@@ -110,21 +126,33 @@ steplap.Scene = (() => {
       this.trails = null;
       return box;
     }
-    // Space for symbols at the left and right, above and below. The arrow of a drive is in front of all bodies that it drives.
+    // Extends the view to the machine at the instant at which the page opens.
+    takeOpening(box, size) {
+      if (this.opening === undefined) return;
+      const own = new Box(), pose = this.look(this.opening, this.seenFrom, this.magnification);
+      for (const body of this.bodies.values()) body.extend(own, pose(body.name));
+      if (!own.isEmpty && Math.max(...box.joined(own).span) < most * size) box.take(own.low).take(own.high);
+    }
+    // Space for symbols at the left and right, above and below. The arrow of a load is in front of all bodies that it moves.
     margins(width) {
-      const drives = this.elements.flatMap((e) => e.shapes.filter((s) => s.type === 'arrow' && s.style !== 'load')), isAlong = (i) => drives.some((s) => Math.abs((s.direction || [1, 0])[i]) > 0.3);
-      return [0, 1].map((i) => (isAlong(i) ? Math.max(margin, 5.5 * symbolSize(width)) : margin));
+      const drives = this.elements.flatMap((e) => e.shapes.filter((s) => s.type === 'arrow').map((s) => s.direction || [0, 0]));
+      const loads = this.causes().filter(({ shape }) => shape && shape.type === 'arrow');
+      const ways = [...drives, ...loads.map((load) => (load.along ? unit(load.along(load.peakAt)) : load.shape.direction))];
+      return [0, 1].map((i) => (ways.some((d) => Math.abs(d[i]) > 0.3) ? Math.max(margin, 5.5 * symbolSize(width)) : margin));
     }
     // Fits a box of `span` around `middle` into a picture of the given size in pixels.
     fit(middle, span, width, tallest, margins = this.margins(width)) {
       this.width = width;
       this.u = symbolSize(width);
-      const foot = this.footHeight(), scale = Math.min((width - 2 * margins[0]) / Math.max(span[0], 1e-9), (tallest - 2 * margins[1] - foot) / Math.max(span[1], 1e-9));
+      const foot = this.footHeight(),
+            scale =
+              Math.min((width - 2 * margins[0]) / Math.max(span[0], 1e-9), (tallest - 2 * margins[1] - foot) / Math.max(span[1], 1e-9));
       this.height = Math.max(Math.min(200, tallest), span[1] * scale + 2 * margins[1] + foot);
       this.middle = middle;
       this.fittedScale = scale;
       this.svg.setAttribute('viewBox', `0 0 ${width} ${this.height}`);
       this.setView(this.view);
+      this.placeLens();
       this.fitSymbols();
       this.spreadNames();
     }
@@ -134,6 +162,7 @@ steplap.Scene = (() => {
       for (const name of ['width', 'u', 'height', 'middle', 'fittedScale']) this[name] = other[name];
       this.svg.setAttribute('viewBox', `0 0 ${this.width} ${this.height}`);
       this.setView(other.view);
+      this.placeLens();
       this.fitSymbols();
       for (const [name, mark] of this.marks) {
         const same = other.marks.get(name);
@@ -163,17 +192,22 @@ steplap.Scene = (() => {
       this.buildRoads();
       this.buildSymbols();
       this.buildLegend();
+      this.buildLens();
     }
     shapesOf(body) {
       const path = (points, isClosed) => make('path', { d: 'M' + points.map((p) => p.join(' ')).join('L') + (isClosed ? 'Z' : '') });
       const shapes = [];
       const rings = [body.outline, ...body.holes].map((ring) => 'M' + ring.map((p) => p.join(' ')).join('L') + 'Z');
       if (body.outline.length > 2) shapes.push(make('path', { d: rings.join(''), 'fill-rule': 'evenodd' }));
-      if (body.outline.length === 2) { shapes.push(path(body.outline, false)); shapes[0].classList.add('line'); }
+      if (body.outline.length === 2) {
+        shapes.push(path(body.outline, false));
+        shapes[0].classList.add('line');
+      }
       for (const corners of body.polygons) shapes.push(path(corners, true));
       for (const [x, y, r, isRing] of body.circles) {
         shapes.push(make('circle', { cx: x, cy: y, r, class: isRing ? 'ring' : 'round' }));
-        if (!isRing && body !== this.ground) shapes.push(make('path', { d: `M${x} ${y}l${r} 0`, class: 'spoke' })); // makes the rotation visible
+        if (!isRing && body !== this.ground)
+          shapes.push(make('path', { d: `M${x} ${y}l${r} 0`, class: 'spoke' })); // makes the rotation visible
       }
       for (const [from, to] of this.strutsOf(body)) shapes.push(make('path', { d: `M${from.join(' ')}L${to.join(' ')}`, class: 'strut' }));
       for (const [x0, y0, x1, y1, thickness] of body.segments) shapes.push(this.bar([x0, y0], [x1, y1], thickness));
@@ -190,7 +224,8 @@ steplap.Scene = (() => {
             if (shape.type === 'contact' && place !== shape.at[0]) continue; // a line has no end
             if (!['contact', 'spring'].includes(shape.type) || (shape.type === 'spring' && this.isTied(shape))) continue;
             const from = steplap.forms.nearest(body, place.point), far = length(minus(place.point, from));
-            if (far > least && far < 2 * body.reach && !struts.some(([, to]) => length(minus(to, place.point)) < least)) struts.push([from, place.point]);
+            if (far > least && far < 2 * body.reach && !struts.some(([, to]) => length(minus(to, place.point)) < least))
+              struts.push([from, place.point]);
           }
       return struts;
     }
@@ -199,7 +234,11 @@ steplap.Scene = (() => {
       if (body.outline.length < 3 || this.bodies.size > 40) return false;
       const box = new Box(), isWithin = (inner) => [0, 1].every((i) => inner.low[i] > box.low[i] && inner.high[i] < box.high[i]);
       body.extend(box, body.pose);
-      return [...this.bodies.values()].some((other) => { const inner = new Box(); other.extend(inner, other.pose); return other !== body && !other.isPoint && isWithin(inner); });
+      return [...this.bodies.values()].some((other) => {
+        const inner = new Box();
+        other.extend(inner, other.pose);
+        return other !== body && !other.isPoint && isWithin(inner);
+      });
     }
     // Returns true for a spring along an axis whose ends coincide at rest; it is drawn between outlines (springs.js).
     isTied(shape) {
@@ -227,7 +266,7 @@ steplap.Scene = (() => {
       this.updaters.push((t, pose) => {
         const [x, y, angle] = pose(body.name), c = this.scale * Math.cos(angle), s = this.scale * Math.sin(angle);
         const [sx, sy] = this.toScreen([x, y]);
-        group.setAttribute('transform', `matrix(${c} ${-s} ${-s} ${-c} ${sx} ${sy})`);
+        group.setAttribute('transform', `matrix(${c} ${- s} ${- s} ${- c} ${sx} ${sy})`);
         if (centre) centre.setAttribute('transform', `translate(${sx} ${sy}) scale(${0.5 * this.u})`);
         this.showName(body, pose);
         if (joint) group.classList.toggle('slipped', Boolean((since && t >= since[0]) || this.run.modeAt(joint.name, t) >= 2));
@@ -235,13 +274,20 @@ steplap.Scene = (() => {
     }
     // Style classes of a body.
     kindsOf(body) {
-      const { name } = body, kinds = { fixed: body.fixed, unrecorded: body.isUnrecorded, around: this.isAround(body),
-        limb: this.limbs.has(name), yoke: this.yokes.has(name), tank: this.isTank(name) };
+      const { name } = body, kinds = {
+        fixed: body.fixed,
+        unrecorded: body.isUnrecorded,
+        around: this.isAround(body),
+        limb: this.limbs.has(name),
+        yoke: this.yokes.has(name),
+        tank: this.isTank(name)
+      };
       return Object.keys(kinds).filter((kind) => kinds[kind]);
     }
     // A circle with two quarters filled, as drawings mark a centre of gravity.
     centreMark(body) {
-      const mark = make('g', { class: 'centre', 'data-centre': body.name }, make('title', {}, body.label || body.name), make('circle', { r: 1 }), make('path', { d: 'M0 0V-1A1 1 0 0 1 1 0ZM0 0V1A1 1 0 0 1 -1 0Z' }));
+      const mark = make('g', { class: 'centre', 'data-centre': body.name }, make('title', {}, body.label || body.name),
+        make('circle', { r: 1 }), make('path', { d: 'M0 0V-1A1 1 0 0 1 1 0ZM0 0V1A1 1 0 0 1 -1 0Z' }));
       this.bodyLayer.append(mark);
       return mark;
     }
@@ -269,7 +315,10 @@ steplap.Scene = (() => {
       }
     }
     showTrails(t, pose) {
-      if (!this.trails) { this.trailLayer.replaceChildren(); this.buildTrails(); }
+      if (!this.trails) {
+        this.trailLayer.replaceChildren();
+        this.buildTrails();
+      }
       for (const { name, path, points } of this.trails) {
         const past = points.slice(0, 1 + Math.floor(((points.length - 1) * Math.min(t, this.run.end)) / this.run.end));
         path.setAttribute('d', this.poly([...past, pose(name)]));
@@ -292,10 +341,13 @@ steplap.Scene = (() => {
     const whole = boxes.reduce((a, b) => a.joined(b));
     const span = [0, 1].map((i) => Math.max(...boxes.map((b) => b.span[i])));
     const isSamePlace = [0, 1].every((i) => whole.span[i] <= 1.4 * span[i] + 0.2 * Math.max(...span));
-    const width = Math.min(...widths), sizes = boxes.map((b) => Math.max(...b.span)), all = scenes.map((scene) => scene.margins(width)), margins = [0, 1].map((i) => Math.max(...all.map((m) => m[i])));
+    const width = Math.min(...widths), sizes = boxes.map((b) => Math.max(...b.span)), all = scenes.map((scene) => scene.margins(width)),
+          margins = [0, 1].map((i) => Math.max(...all.map((m) => m[i])));
     const isAlike = Math.max(...sizes) < 5 * Math.min(...sizes);
     if (!isAlike) scenes.forEach((scene, k) => scene.fit(boxes[k].middle, boxes[k].span, width, tallest));
-    else scenes.forEach((scene, k) => scene.fit(isSamePlace ? whole.middle : boxes[k].middle, isSamePlace ? whole.span : span, width, tallest, margins));
+    else
+      scenes.forEach(
+        (scene, k) => scene.fit(isSamePlace ? whole.middle : boxes[k].middle, isSamePlace ? whole.span : span, width, tallest, margins));
   };
   return Scene;
 })();

@@ -11,12 +11,14 @@ steplap.marks = (() => {
       if (s.isBound || s.sign < 0) continue;
       for (const { limit, isBoth } of steplap.quantities.limitsOf(s.run).get(s.name) || [])
         for (const value of isBoth ? [limit, -limit] : [limit])
-          if (!found.some((f) => Math.abs(f.value - value) <= 1e-9 * Math.abs(value))) found.push({ value, text: `limit ${one(value, s.channel.unit)}` });
+          if (!found.some((f) => Math.abs(f.value - value) <= 1e-9 * Math.abs(value)))
+            found.push({ value, text: `limit ${one(value, s.channel.unit)}` });
     }
     return found;
   }
   // Returns true for limits that extend the axis: those not far beyond the values reached.
-  const isNear = (value, low, high) => Math.abs(value) <= 1.6 * Math.max(Math.abs(low), Math.abs(high)) && (value >= 0 ? high > 0 || value <= high : low < 0);
+  const isNear = (value, low, high) =>
+    Math.abs(value) <= 1.6 * Math.max(Math.abs(low), Math.abs(high)) && (value >= 0 ? high > 0 || value <= high : low < 0);
 
   // Returns the decisive extreme of a channel: the one that a criterion limits, the minimum of a margin, otherwise the larger one.
   function worstEnd(s, e) {
@@ -29,7 +31,8 @@ steplap.marks = (() => {
     const e = s.run.summary.extremes[s.name];
     if (s.isBound || !e || !isKnown(e.min) || !isKnown(e.max) || s.isZero) return null;
     const key = worstEnd(s, e);
-    return isFinite(e[key]) && isKnown(e[`t_${key}`]) && e.max > e.min ? { s, t: e[`t_${key}`], value: e[key], error: e[`error_${key}`] } : null;
+    return isFinite(e[key]) && isKnown(e[`t_${key}`]) && e.max > e.min ? { s, t: e[`t_${key}`], value: e[key], error: e[`error_${key}`] }
+                                                                       : null;
   }
   // Width of a text of 11 pixels, with some margin.
   const widthOf = (text) => 6.9 * text.length + 6;
@@ -41,10 +44,24 @@ steplap.marks = (() => {
     const taken = [];
     const write = (text, spots, style) => {
       for (const [x, y, anchor] of spots) {
-        const w = widthOf(text), from = anchor === 'end' ? x - w : anchor === 'middle' ? x - w / 2 : x, box = [from, y - 10, from + w, y + 3];
-        if (box[0] < place.left || box[2] > place.right || box[1] < place.top || box[3] > place.bottom || taken.some((b) => meet(b, box))) continue;
+        const w = widthOf(text),
+              from = anchor === 'end' ? x - w
+          : anchor === 'middle'       ? x - w / 2
+                                      : x,
+              box = [from, y - 10, from + w, y + 3];
+        if (box[0] < place.left || box[2] > place.right || box[1] < place.top || box[3] > place.bottom || taken.some((b) => meet(b, box)))
+          continue;
         taken.push(box);
-        svg.append(make('text', { x: x + (anchor === 'start' ? 3 : anchor === 'end' ? -3 : 0), y, 'text-anchor': anchor, class: 'mark-text', style }, text));
+        svg.append(
+          make('text', { x: x +
+              (anchor === 'start'    ? 3
+                  : anchor === 'end' ? -3
+                                     : 0),
+            y,
+            'text-anchor': anchor,
+            class: 'mark-text',
+            style },
+            text));
         return;
       }
     };
@@ -63,9 +80,11 @@ steplap.marks = (() => {
     }
     for (const { s, t, value, error } of dots) {
       const text = onScale(value, scale, { error });
-      const x = place.x(t), y = place.y(value), above = [[x, y - 7, 'middle'], [x + 4, y - 6, 'start'], [x - 4, y - 6, 'end']], below = [[x, y + 16, 'middle'], [x + 4, y + 15, 'start'], [x - 4, y + 15, 'end']];
+      const x = place.x(t), y = place.y(value), above = [[x, y - 7, 'middle'], [x + 4, y - 6, 'start'], [x - 4, y - 6, 'end']],
+            below = [[x, y + 16, 'middle'], [x + 4, y + 15, 'start'], [x - 4, y + 15, 'end']];
       const aside = [[x + 5, y + 4, 'start'], [x - 5, y + 4, 'end']];
-      if (y >= place.top - 1 && y <= place.bottom + 1) write(text, value >= 0 ? [...above, ...aside, ...below] : [...below, ...aside, ...above], `fill:${colourOf(s)}`);
+      if (y >= place.top - 1 && y <= place.bottom + 1)
+        write(text, value >= 0 ? [...above, ...aside, ...below] : [...below, ...aside, ...above], `fill:${colourOf(s)}`);
     }
   }
   return { limitsOf, isNear, extremeOf, draw };

@@ -10,11 +10,13 @@
   const oscillates = (m) => m.imaginary !== 0;
   function kindOf(m) {
     const grows = m.real > 1e-9 * Math.hypot(m.real, m.imaginary);
-    if (oscillates(m)) return grows ? 'vibrates and grows: not stable' : m.damping_ratio < 1e-9 ? 'vibrates without damping' : 'vibrates and decays';
+    if (oscillates(m))
+      return grows ? 'vibrates and grows: not stable' : m.damping_ratio < 1e-9 ? 'vibrates without damping' : 'vibrates and decays';
     return grows ? 'runs away: not stable' : 'creeps back without vibrating';
   }
   const hertz = (f) => `${plain(f, 5)} Hz`;
-  const damping = (m) => (oscillates(m) ? `${plain(Math.abs(m.damping_ratio) < 1e-9 ? 0 : 100 * m.damping_ratio, 4)} %` : `${plain(m.real, 4)} /s`);
+  const damping = (m) =>
+    (oscillates(m) ? `${plain(Math.abs(m.damping_ratio) < 1e-9 ? 0 : 100 * m.damping_ratio, 4)} %` : `${plain(m.real, 4)} /s`);
 
   // Returns the factor of the mode at t periods.
   function factor(t) {
@@ -34,11 +36,15 @@
   at('title').textContent = found.title || run.name;
   at('footer').textContent = `Written by ${steplap.data.program}.`;
   const scene = new steplap.Scene(run), box = make('div', { class: 'scene', 'data-run': run.name });
-  box.append(scene.svg, steplap.save.buttons({ SVG: () => steplap.save.svg(scene.svg, pictureName()), PNG: () => steplap.save.png(scene.svg, pictureName()) }));
+  box.append(scene.svg,
+    steplap.save.buttons({ SVG: () => steplap.save.svg(scene.svg, pictureName()), PNG: () => steplap.save.png(scene.svg, pictureName()) }));
   at('scenes').append(box);
   const pictureName = () => `${run.name}_mode_${modes.indexOf(mode) + 1}`;
 
-  const show = (t) => { phase = t; scene.show(t); };
+  const show = (t) => {
+    phase = t;
+    scene.show(t);
+  };
   function fit() {
     // The largest displacement is a twentieth of the picture.
     amplitude = 1;
@@ -58,7 +64,9 @@
     mode = modes[k];
     at('mode').value = String(k);
     const speed = oscillates(mode) ? 1 / (cycle * mode.frequency) : memory / (cycle * Math.abs(mode.real));
-    at('shown').textContent = `Mode ${k + 1}: ${hertz(mode.natural_frequency)}${oscillates(mode) ? `, damped ${hertz(mode.frequency)}, damping ${damping(mode)}` : `, ${damping(mode)}`}; ${kindOf(mode)}. Shown ${speed < 1 ? `${plain(1 / speed, 3)} times slower` : `${plain(speed, 3)} times faster`} than it is.`;
+    at('shown').textContent = `Mode ${k + 1}: ${hertz(mode.natural_frequency)}${
+      oscillates(mode) ? `, damped ${hertz(mode.frequency)}, damping ${damping(mode)}` : `, ${damping(mode)}`}; ${kindOf(mode)}. Shown ${
+      speed < 1 ? `${plain(1 / speed, 3)} times slower` : `${plain(speed, 3)} times faster`} than it is.`;
     for (const row of document.querySelectorAll('#modes-table tbody tr')) row.classList.toggle('chosen', Number(row.dataset.mode) === k);
     fit();
     show(0);
@@ -70,11 +78,18 @@
       const button = make('button', { type: 'button', class: 'event-time' }, String(k + 1));
       button.addEventListener('click', () => choose(k));
       const cells = [hertz(m.natural_frequency), oscillates(m) ? hertz(m.frequency) : '–', damping(m), kindOf(m), m.moves_most];
-      return make('tr', { 'data-mode': k }, make('th', { scope: 'row' }, button), ...cells.map((c, i) => make('td', i < 3 ? { class: 'number' } : {}, c)));
+      return make('tr', { 'data-mode': k }, make('th', { scope: 'row' }, button),
+        ...cells.map((c, i) => make('td', i < 3 ? { class: 'number' } : {}, c)));
     });
-    return make('table', {}, make('thead', {}, make('tr', {}, ...heads.map((h, i) => make('th', { scope: 'col', ...(i > 0 && i < 4 ? { class: 'number' } : {}) }, h)))), make('tbody', {}, ...rows));
+    return make('table', {},
+      make('thead', {},
+        make('tr', {}, ...heads.map((h, i) => make('th', { scope: 'col', ...(i > 0 && i < 4 ? { class: 'number' } : {}) }, h)))),
+      make('tbody', {}, ...rows));
   }
-  if (found.rigid_motions) at('remarks').append(make('p', {}, `${found.rigid_motions} coordinate${found.rigid_motions > 1 ? 's move' : ' moves'} freely: nothing holds the scene along ${found.rigid_motions > 1 ? 'them' : 'it'}.`));
+  if (found.rigid_motions)
+    at('remarks').append(make('p', {},
+      `${found.rigid_motions} coordinate${found.rigid_motions > 1 ? 's move' : ' moves'} freely: nothing holds the scene along ${
+        found.rigid_motions > 1 ? 'them' : 'it'}.`));
   for (const remark of found.remarks) at('remarks').append(make('p', { class: 'note' }, remark));
 
   const isPlaying = () => at('play').getAttribute('aria-pressed') === 'true';
@@ -91,25 +106,32 @@
     last = now;
     requestAnimationFrame(frame);
   }
-  for (const [id, action] of [['closer', () => view.zoomAt(scene, 1.5)], ['further', () => view.zoomAt(scene, 1 / 1.5)], ['whole', () => view.reset()]]) {
+  for (const [id, action] of [
+         ['closer', () => view.zoomAt(scene, 1.5)], ['further', () => view.zoomAt(scene, 1 / 1.5)], ['whole', () => view.reset()]]) {
     at(id).append(steplap.icon(id));
     at(id).addEventListener('click', action);
   }
   modes.forEach((m, k) => at('mode').append(make('option', { value: k }, `${k + 1}: ${hertz(m.natural_frequency)}`)));
   at('mode').addEventListener('change', (event) => choose(Number(event.target.value)));
-  at('amplitude').addEventListener('input', () => { fit(); show(phase); });
+  at('amplitude').addEventListener('input', () => {
+    fit();
+    show(phase);
+  });
   at('decaying').addEventListener('change', () => show(phase));
   at('play').addEventListener('click', () => setPlaying(!isPlaying()));
   let seenWidth = document.documentElement.clientWidth;
   window.addEventListener('resize', () => {
     if (document.documentElement.clientWidth === seenWidth) return;
     seenWidth = document.documentElement.clientWidth;
-    fit(); show(phase);
+    fit();
+    show(phase);
   });
   at('modes-table').append(table());
   setPlaying(false);
-  if (modes.length) { choose(0); setPlaying(!window.matchMedia('(prefers-reduced-motion: reduce)').matches); }
-  else {
+  if (modes.length) {
+    choose(0);
+    setPlaying(!window.matchMedia('(prefers-reduced-motion: reduce)').matches);
+  } else {
     at('play').disabled = true;
     at('shown').textContent = 'Nothing vibrates: no coordinate is both free and held.';
     fit();

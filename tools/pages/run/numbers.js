@@ -50,7 +50,9 @@ steplap.numbers = (() => {
   function largestOf(run, unit) {
     let largest = 0;
     for (const e of Object.values(run.summary.extremes))
-      if (e.unit === unit) for (const v of [e.min, e.max]) if (isKnown(v) && isFinite(v)) largest = Math.max(largest, Math.abs(v));
+      if (e.unit === unit)
+        for (const v of [e.min, e.max])
+          if (isKnown(v) && isFinite(v)) largest = Math.max(largest, Math.abs(v));
     return largest;
   }
   function roundingOf(run, unit) {
@@ -58,7 +60,8 @@ steplap.numbers = (() => {
     const known = roundings.get(run);
     if (!known.has(unit)) {
       let largest = largestOf(run, unit);
-      if (unit === 'N m') largest = Math.max(largest, largestOf(run, 'N') * Math.min(1, largestOf(run, 'm'))); // couples are forces times lengths
+      if (unit === 'N m')
+        largest = Math.max(largest, largestOf(run, 'N') * Math.min(1, largestOf(run, 'm'))); // couples are forces times lengths
       known.set(unit, unit === 'm' ? Math.min(5e-7, 5e-6 * largest) : unit === 'rad' ? Math.max(1e-10, 1e-9 * largest) : 1e-9 * largest);
     }
     return known.get(unit);
@@ -69,7 +72,8 @@ steplap.numbers = (() => {
   function isRounding(run, name) {
     const e = run.summary.extremes[name];
     if (!e || !isKnown(e.min) || !isKnown(e.max)) return false;
-    return Math.max(Math.abs(e.min), Math.abs(e.max)) <= Math.max(roundingOf(run, e.unit || ''), Math.min(e.error_min || 0, e.error_max || 0));
+    return Math.max(Math.abs(e.min), Math.abs(e.max)) <=
+      Math.max(roundingOf(run, e.unit || ''), Math.min(e.error_min || 0, e.error_max || 0));
   }
 
   // Formats several numbers with one unit and prefix: { unit, texts }. `entries`: { value, error, limit }.
@@ -81,11 +85,13 @@ steplap.numbers = (() => {
     const texts = entries.map(({ value, error, limit }) => {
       if (isKnown(value) && Math.abs(value) <= rounding) return '0';
       const size = Math.abs(value) * scale.factor;
-      return measured(isKnown(value) ? value * scale.factor : value, Math.min(most, decimalsOf(size)), isError(error) ? error * scale.factor : error, isKnown(limit) ? limit * scale.factor : limit);
+      return measured(isKnown(value) ? value * scale.factor : value, Math.min(most, decimalsOf(size)),
+        isError(error) ? error * scale.factor : error, isKnown(limit) ? limit * scale.factor : limit);
     });
     return { unit: scale.unit, factor: scale.factor, texts };
   }
-  const withUnit = (text, unit) => (unit && text !== '–' ? (text.includes('±') ? `(${text})${space}${unit}` : `${text}${space}${unit}`) : text);
+  const withUnit = (text, unit) =>
+    (unit && text !== '–' ? (text.includes('±') ? `(${text})${space}${unit}` : `${text}${space}${unit}`) : text);
   // Formats one number with its unit.
   function one(value, unit, { error, limit, rounding = 0 } = {}) {
     const found = column([{ value, error, limit }], unit, rounding);
@@ -94,7 +100,9 @@ steplap.numbers = (() => {
   // Formats a number in a given unit { factor, unit }, such as that of an axis.
   function onScale(value, scale, { error, rounding = 0 } = {}) {
     if (isKnown(value) && Math.abs(value) <= rounding) return withUnit('0', scale.unit);
-    return withUnit(measured(isKnown(value) ? value * scale.factor : value, decimalsOf(Math.abs(value) * scale.factor), isError(error) ? error * scale.factor : error), scale.unit);
+    return withUnit(measured(isKnown(value) ? value * scale.factor : value, decimalsOf(Math.abs(value) * scale.factor),
+                      isError(error) ? error * scale.factor : error),
+      scale.unit);
   }
   // Formats an instant to a ten-thousandth of the run or to its error. Omits it if the error exceeds 2 % of the run, as for the maximum of
   // a flat curve.

@@ -6,7 +6,8 @@ steplap.Plots = (() => {
   const eventStyles = [
     { roles: ['slip', 'apart', 'break'], colour: 'slips', dash: [], name: 'slips' },
     { roles: ['stick'], colour: 'good', dash: [6, 3], name: 'sticks' },
-    { roles: ['open', 'close', 'strike'], colour: 'axis', dash: [2, 3], name: 'opens or closes' }];
+    { roles: ['open', 'close', 'strike'], colour: 'axis', dash: [2, 3], name: 'opens or closes' }
+  ];
   const styleOf = (role) => eventStyles.find((s) => s.roles.includes(role));
   const resolved = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
@@ -15,7 +16,8 @@ steplap.Plots = (() => {
       Object.assign(this, { owner, figure, runs, series: [] });
       for (const run of runs) {
         for (const name of run.matching(figure.channels)) this.addSeries(run, name, 1, false);
-        for (const name of run.matching(figure.bounds || [])) for (const sign of [1, -1]) this.addSeries(run, name, sign, true);
+        for (const name of run.matching(figure.bounds || []))
+          for (const sign of [1, -1]) this.addSeries(run, name, sign, true);
       }
       this.drawn = this.series.filter((s) => !s.isZero);
       this.limits = steplap.marks.limitsOf(this.drawn);
@@ -26,8 +28,11 @@ steplap.Plots = (() => {
       this.area = make('div', { class: 'graph' });
       this.box.append(this.values);
       if (!this.drawn.length) return;
-      this.box.append(this.area, steplap.save.buttons({ CSV: () => steplap.save.file(`${name}.csv`, 'text/csv', this.csv()),
-        SVG: () => steplap.onPaper(() => steplap.save.svg(this.paperDrawing(), name)), PNG: () => steplap.onPaper(() => steplap.save.png(this.paperDrawing(), name)) }));
+      this.box.append(this.area, steplap.save.buttons({
+        CSV: () => steplap.save.file(`${name}.csv`, 'text/csv', this.csv()),
+        SVG: () => steplap.onPaper(() => steplap.save.svg(this.paperDrawing(), name)),
+        PNG: () => steplap.onPaper(() => steplap.save.png(this.paperDrawing(), name))
+      }));
       this.cursor = make('div', { class: 'cursor' });
       this.eventName = make('div', { class: 'event-name', role: 'status', hidden: '' });
       this.area.addEventListener('mousemove', ({ clientX }) => {
@@ -38,16 +43,29 @@ steplap.Plots = (() => {
       this.area.addEventListener('dblclick', () => setTimeout(() => this.owner.zoomOut())); // back to the scale of all
     }
     addSeries(run, name, sign, isBound) {
-      const prior = this.series.find((s) => s.name === name && s.isBound === isBound), own = this.series.filter((s) => s.run === run && !s.isBound).length;
+      const prior = this.series.find((s) => s.name === name && s.isBound === isBound),
+            own = this.series.filter((s) => s.run === run && !s.isBound).length;
       const number = new Set(this.series.filter((s) => !s.isBound).map((s) => s.name)).size % curves;
       const colour = isBound ? 'bound' : prior ? prior.colour : `curve-${number + 1}`;
       const label = (isBound ? (sign > 0 ? '+' : '−') : '') + name + (this.runs.length > 1 ? `, ${run.name}` : '');
-      this.series.push({ run, name, channel: run.channel(name), sign, isBound, colour, label, isZero: steplap.numbers.isRounding(run, name),
-        dash: isBound ? [2, 3] : dashes[Math.max(this.runs.indexOf(run), own % dashes.length)] });
+      this.series.push({
+        run,
+        name,
+        channel: run.channel(name),
+        sign,
+        isBound,
+        colour,
+        label,
+        isZero: steplap.numbers.isRounding(run, name),
+        dash: isBound ? [2, 3] : dashes[Math.max(this.runs.indexOf(run), own % dashes.length)]
+      });
     }
     keyText(s) { return (s.isBound ? '±' : '') + s.label.replace(/^\+/, '') + (s.isZero ? ' stays 0' : ''); }
     draw() {
-      if (!this.series.length) { this.values.textContent = 'No such channel in this run.'; return; }
+      if (!this.series.length) {
+        this.values.textContent = 'No such channel in this run.';
+        return;
+      }
       const [low, high] = this.owner.rangeOf(this.figure, this.owner.full);
       this.scale = steplap.data.scaleFor(this.series[0].channel.unit, Math.max(Math.abs(low), Math.abs(high)));
       this.keys();
@@ -55,14 +73,38 @@ steplap.Plots = (() => {
       const labels = ['t'], options = {};
       this.drawn.forEach((s, i) => {
         labels.push(`s${i}`);
-        options[`s${i}`] = { color: resolved(s.colour), strokePattern: s.dash, strokeWidth: s.isBound ? 1.2 : 1.8, connectSeparatedPoints: true };
+        options[`s${i}`] = {
+          color: resolved(s.colour),
+          strokePattern: s.dash,
+          strokeWidth: s.isBound ? 1.2 : 1.8,
+          connectSeparatedPoints: true
+        };
       });
       const range = this.valueRange();
       this.graph = new Dygraph(this.area, this.rows(this.scale.factor), {
-        labels, series: options, legend: 'never', xlabel: 't [s]', ylabel: this.unitLabel(),
-        dateWindow: this.owner.window, valueRange: range, gridLineColor: resolved('grid'), axisLineColor: resolved('axis'), axisLabelFontSize: 12, xLabelHeight: 17, yLabelWidth: 17, highlightCircleSize: 0,
-        axes: { y: { axisLabelWidth: this.labelWidth(range), ticker: (a, b, pixels) => this.ticker(a, b, Math.max(3, Math.floor(pixels / 34))) }, x: { ticker: (a, b, pixels) => this.ticker(a, b, Math.max(3, Math.floor(pixels / 70))) } },
-        drawCallback: (g, isInitial) => { if (!isInitial) this.owner.follow(this, g.xAxisRange()); this.graph = g; this.place(); this.mark(); },
+        labels,
+        series: options,
+        legend: 'never',
+        xlabel: 't [s]',
+        ylabel: this.unitLabel(),
+        dateWindow: this.owner.window,
+        valueRange: range,
+        gridLineColor: resolved('grid'),
+        axisLineColor: resolved('axis'),
+        axisLabelFontSize: 12,
+        xLabelHeight: 17,
+        yLabelWidth: 17,
+        highlightCircleSize: 0,
+        axes: {
+          y: { axisLabelWidth: this.labelWidth(range), ticker: (a, b, pixels) => this.ticker(a, b, Math.max(3, Math.floor(pixels / 34))) },
+          x: { ticker: (a, b, pixels) => this.ticker(a, b, Math.max(3, Math.floor(pixels / 70))) }
+        },
+        drawCallback: (g, isInitial) => {
+          if (!isInitial) this.owner.follow(this, g.xAxisRange());
+          this.graph = g;
+          this.place();
+          this.mark();
+        },
         underlayCallback: (context, rect, g) => this.drawEvents(context, rect, g),
         clickCallback: (event, x) => this.owner.onTime(this.graph.toDataXCoord(event.offsetX) || x),
       });
@@ -74,7 +116,8 @@ steplap.Plots = (() => {
     replaceRun(from, to) {
       if (!this.series.every((s) => s.run !== from || to.channel(s.name))) return false;
       this.runs = this.runs.map((r) => (r === from ? to : r));
-      for (const s of this.series) if (s.run === from) Object.assign(s, { run: to, channel: to.channel(s.name) });
+      for (const s of this.series)
+        if (s.run === from) Object.assign(s, { run: to, channel: to.channel(s.name) });
       this.limits = steplap.marks.limitsOf(this.drawn);
       return true;
     }
@@ -85,7 +128,13 @@ steplap.Plots = (() => {
       this.scale = steplap.data.scaleFor(this.series[0].channel.unit, Math.max(Math.abs(low), Math.abs(high)));
       this.keys();
       const valueRange = this.valueRange();
-      this.graph.updateOptions({ file: this.rows(this.scale.factor), dateWindow: this.owner.window, valueRange, ylabel: this.unitLabel(), axes: { y: { axisLabelWidth: this.labelWidth(valueRange) } } });
+      this.graph.updateOptions({
+        file: this.rows(this.scale.factor),
+        dateWindow: this.owner.window,
+        valueRange,
+        ylabel: this.unitLabel(),
+        axes: { y: { axisLabelWidth: this.labelWidth(valueRange) } }
+      });
       this.show(this.owner.t);
     }
     unitLabel() { return `${this.scale.unit ? '[' + this.escaped(this.scale.unit) + ']' : '[–]'}`; }
@@ -99,7 +148,11 @@ steplap.Plots = (() => {
     valueRange() {
       let [low, high] = this.owner.rangeOf(this.figure, this.owner.window);
       if (!(low <= high)) return [0, 1];
-      for (const { value } of this.owner.limitsOf(this.figure)) if (steplap.marks.isNear(value, low, high)) { low = Math.min(low, value); high = Math.max(high, value); }
+      for (const { value } of this.owner.limitsOf(this.figure))
+        if (steplap.marks.isNear(value, low, high)) {
+          low = Math.min(low, value);
+          high = Math.max(high, value);
+        }
       const room = 0.13 * (high - low) || 0.1 * Math.abs(high) || 1 / this.scale.factor;
       return [(low - room) * this.scale.factor, (high + room) * this.scale.factor];
     }
@@ -111,7 +164,10 @@ steplap.Plots = (() => {
     escaped(text) { return text.replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`); }
     // Returns one row per time of any series; dygraphs bridges the gaps.
     rows(factor) {
-      const list = this.drawn, times = list[0].channel.times, value = (s, i) => { const v = s.sign * s.channel.value(i) * factor; return isFinite(v) ? v : NaN; };
+      const list = this.drawn, times = list[0].channel.times, value = (s, i) => {
+        const v = s.sign * s.channel.value(i) * factor;
+        return isFinite(v) ? v : NaN;
+      };
       if (list.every((s) => s.channel.times === times)) return Array.from(times, (t, i) => [t, ...list.map((s) => value(s, i))]);
       const rows = new Map();
       list.forEach((s, k) => {
@@ -127,11 +183,21 @@ steplap.Plots = (() => {
       this.values.replaceChildren();
       for (const s of this.series) {
         if (s.isBound && s.sign < 0) continue;
-        const line = make('line', { x1: 0, y1: 4.5, x2: 30, y2: 4.5, 'stroke-width': 2.2, 'stroke-dasharray': (s.dash || []).join(' '), style: `stroke:var(--${s.colour})` });
+        const line = make('line', {
+          x1: 0,
+          y1: 4.5,
+          x2: 30,
+          y2: 4.5,
+          'stroke-width': 2.2,
+          'stroke-dasharray': (s.dash || []).join(' '),
+          style: `stroke:var(--${s.colour})`
+        });
         s.readout = s.isZero ? null : make('span', { class: 'readout' });
-        this.values.append(make('span', { class: 'key', title: s.run.meaning(s.name) }, make('svg', { viewBox: '0 0 30 9' }, line), `${this.keyText(s)} `, s.readout || ''));
+        this.values.append(make('span', { class: 'key', title: s.run.meaning(s.name) }, make('svg', { viewBox: '0 0 30 9' }, line),
+          `${this.keyText(s)} `, s.readout || ''));
       }
-      const [low, high] = this.owner.rangeOf(this.figure, this.owner.full), far = this.limits.filter(({ value }) => !steplap.marks.isNear(value, low, high));
+      const [low, high] = this.owner.rangeOf(this.figure, this.owner.full),
+                  far = this.limits.filter(({ value }) => !steplap.marks.isNear(value, low, high));
       const texts = steplap.data.unique([far.map((f) => f.text.replace('−', ''))]); // equal limits on both sides of zero are labelled once
       if (far.length) this.values.append(make('span', { class: 'key far' }, `${texts.join(', ')}: beyond this picture`));
     }
@@ -162,22 +228,36 @@ steplap.Plots = (() => {
         const x = g.toDomXCoord(t);
         if (x < rect.x || x > rect.x + rect.w) continue;
         context.save();
-        context.strokeStyle = resolved(style.colour); context.globalAlpha = isDense ? 0.15 : 0.55; context.lineWidth = 1; context.setLineDash(style.dash);
-        context.beginPath(); context.moveTo(x, rect.y); context.lineTo(x, rect.y + rect.h); context.stroke();
+        context.strokeStyle = resolved(style.colour);
+        context.globalAlpha = isDense ? 0.15 : 0.55;
+        context.lineWidth = 1;
+        context.setLineDash(style.dash);
+        context.beginPath();
+        context.moveTo(x, rect.y);
+        context.lineTo(x, rect.y + rect.h);
+        context.stroke();
         context.restore();
       }
     }
     mark() {
       if (!this.graph || !this.overlay) return;
       const area = this.graph.getArea(), g = this.graph;
-      steplap.marks.draw(this.overlay, this, { x: (t) => g.toDomXCoord(t), y: (v) => g.toDomYCoord(v * this.scale.factor), left: area.x, right: area.x + area.w, top: area.y, bottom: area.y + area.h },
+      steplap.marks.draw(this.overlay, this, {
+        x: (t) => g.toDomXCoord(t),
+        y: (v) => g.toDomYCoord(v * this.scale.factor),
+        left: area.x,
+        right: area.x + area.w,
+        top: area.y,
+        bottom: area.y + area.h
+      },
         (s) => `var(--${s.colour})`);
     }
     // Returns the displayed curves in their own units as CSV: one column per curve, one row per time of any of them.
     csv() {
       const [from, to] = this.graph.xAxisRange(), list = this.series.filter((s) => !s.isBound || s.sign > 0);
       const cell = (text) => (/[",\n\r]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
-      const heads = ['t [s]', ...list.map((s) => cell(`${s.name} [${s.channel.unit || '1'}]${this.runs.length > 1 ? `, ${s.run.name}` : ''}`))];
+      const heads =
+        ['t [s]', ...list.map((s) => cell(`${s.name} [${s.channel.unit || '1'}]${this.runs.length > 1 ? `, ${s.run.name}` : ''}`))];
       const rows = new Map();
       list.forEach((s, k) => {
         for (let i = 0; i < s.channel.length; ++i) {
@@ -190,7 +270,10 @@ steplap.Plots = (() => {
       const lines = [...rows].sort((a, b) => a[0] - b[0]).map(([t, values]) => [t, ...values].join(','));
       return [heads.join(','), ...lines].join('\n') + '\n';
     }
-    paperDrawing() { this.drawForPaper(); return this.paper; }
+    paperDrawing() {
+      this.drawForPaper();
+      return this.paper;
+    }
     drawForPaper() {
       if (!this.graph) return;
       if (this.paper) this.paper.remove();
@@ -206,7 +289,10 @@ steplap.Plots = (() => {
     show(t) {
       if (!this.graph) return;
       this.place();
-      for (const s of this.series) if (s.readout) s.readout.textContent = steplap.numbers.onScale(s.channel.at(t), this.scale, { rounding: steplap.numbers.roundingOf(s.run, s.channel.unit) });
+      for (const s of this.series)
+        if (s.readout)
+          s.readout.textContent =
+            steplap.numbers.onScale(s.channel.at(t), this.scale, { rounding: steplap.numbers.roundingOf(s.run, s.channel.unit) });
     }
   }
 
@@ -216,12 +302,19 @@ steplap.Plots = (() => {
       this.full = [0, Math.max(...steplap.data.runs.map((r) => r.end))];
       this.window = this.full;
       this.figures = steplap.figures.of(steplap.data.runs);
-      document.getElementById('event-key').textContent = `Vertical lines: ${eventStyles.map((s, i) => `${s.name} (${['solid', 'dashed', 'dotted'][i]})`).join(', ')}. A dot marks the worst value of a curve: the lowest of a margin, the largest of others.`;
+      document.getElementById('event-key').textContent = `Vertical lines: ${
+        eventStyles.map((s, i) => `${s.name} (${['solid', 'dashed', 'dotted'][i]})`)
+          .join(', ')}. A dot marks the worst value of a curve: the lowest of a margin, the largest of others.`;
     }
     // Returns the minimum and maximum of any run in a figure within a time window, including extremes between samples.
     rangeOf(figure, [from, to]) {
       let low = Infinity, high = -Infinity;
-      const take = (v) => { if (isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); } };
+      const take = (v) => {
+        if (isFinite(v)) {
+          low = Math.min(low, v);
+          high = Math.max(high, v);
+        }
+      };
       for (const plot of this.plots) {
         if (plot.figure !== figure) continue;
         for (const s of plot.drawn.length ? plot.drawn : plot.series) {
@@ -238,7 +331,8 @@ steplap.Plots = (() => {
     }
     limitsOf(figure) { return this.plots.filter((p) => p.figure === figure).flatMap((p) => p.limits); }
     build() {
-      for (const plot of this.plots) if (plot.graph) plot.graph.destroy();
+      for (const plot of this.plots)
+        if (plot.graph) plot.graph.destroy();
       const runs = steplap.data.runs, isBeside = this.layout === 'beside' && runs.length > 1;
       this.grid.style.setProperty('--columns', isBeside ? Math.min(runs.length, 3) : 2);
       this.plots = [];
@@ -247,7 +341,10 @@ steplap.Plots = (() => {
       this.grid.replaceChildren(...this.plots.map((p) => p.box));
       for (const plot of this.plots) plot.draw();
     }
-    add(channel) { this.extra.push({ name: channel, title: '', channels: [channel.replace(/[*?]/g, '?')], bounds: [] }); this.build(); }
+    add(channel) {
+      this.extra.push({ name: channel, title: '', channels: [channel.replace(/[*?]/g, '?')], bounds: [] });
+      this.build();
+    }
     // Returns the figure that shows a channel of a run, which is created if there is none.
     figureWith(channel, run) {
       const has = (p) => p.graph && p.runs.includes(run) && p.drawn.some((s) => s.name === channel && s.run === run);
@@ -267,7 +364,12 @@ steplap.Plots = (() => {
     }
     zoomOut() { this.zoom([...this.full]); }
     // Draws the time window for printing; canvases would print at the resolution of the screen.
-    preparePrint() { for (const plot of this.plots) plot.drawForPaper(); }
-    show(t) { this.t = t; for (const plot of this.plots) plot.show(t); }
+    preparePrint() {
+      for (const plot of this.plots) plot.drawForPaper();
+    }
+    show(t) {
+      this.t = t;
+      for (const plot of this.plots) plot.show(t);
+    }
   };
 })();

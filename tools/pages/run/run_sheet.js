@@ -5,13 +5,15 @@ steplap.runSheet = (run) => {
   const usual = 8.5; // pt
 
   // A criterion names an element or one of its channels; it is matched with the utilisation of the same value and limit.
-  const usedBy = (c) => overview.utilisations.find((u) => u.is_judged && u.value === c.value && u.limit === c.limit &&
-    (u.channel === c.where || u.channel.startsWith(`${c.where}.`)));
+  const usedBy = (c) => overview.utilisations.find(
+    (u) => u.is_judged && u.value === c.value && u.limit === c.limit && (u.channel === c.where || u.channel.startsWith(`${c.where}.`)));
   const words = (c) => (c.outcome === 'met' ? 'met' : c.outcome === 'open' ? 'open' : `not met: ${c.outcome}`);
   function limitRow({ c, used }) {
     const value = one(c.value, c.unit, { error: c.error, limit: c.limit }), error = isKnown(c.error) ? one(c.error, c.unit) : 'not known';
-    return [c.name, c.asked, c.reason || 'not stated', value, error, one(c.limit, c.unit), used ? percent(used.share, used.error) : '–',
-      isKnown(c.at) ? instant(c.at, run.run_end, c.atError) : '–', { text: words(c), class: c.outcome === 'met' ? 'met' : 'beyond' }];
+    return [
+      c.name, c.asked, c.reason || 'not stated', value, error, one(c.limit, c.unit), used ? percent(used.share, used.error) : '–',
+      isKnown(c.at) ? instant(c.at, run.run_end, c.atError) : '–', { text: words(c), class: c.outcome === 'met' ? 'met' : 'beyond' }
+    ];
   }
   function limits() {
     const share = ({ used }) => used?.share ?? Infinity;
@@ -35,11 +37,18 @@ steplap.runSheet = (run) => {
   const inputs = model.inputs.map((file) => named(file.file, file.sha256));
   const digests = [...inputs, named('effective model.toml', run.model_sha256)].join('; ');
   const { name, version } = run.summary.program;
-  const contentOf = (keep) => ({ title: `Run: ${model.title || run.name}`, about: `${digests}. Made by ${name} ${version}.`,
-    word, verdict: badge.name, reason: overview.reason,
-    parts: [make('div', { class: 'beside' }, machine, loads), part('Limits', ...limits()),
+  const contentOf = (keep) => ({
+    title: `Run: ${model.title || run.name}`,
+    about: `${digests}. Made by ${name} ${version}.`,
+    word,
+    verdict: badge.name,
+    reason: overview.reason,
+    parts: [
+      make('div', { class: 'beside' }, machine, loads), part('Limits', ...limits()),
       make('div', { class: 'flow' }, part('Numerical error', list(doubts)), part('What happened', ...story(keep.story)),
-        ...(run.summary.left_out ? [part('Not in the model', list(run.summary.left_out))] : []))],
-    signed: ['Prepared by', 'Approved by'] });
+        ...(run.summary.left_out ? [part('Not in the model', list(run.summary.left_out))] : []))
+    ],
+    signed: ['Prepared by', 'Approved by']
+  });
   return { contentOf, room: { most: { size: usual, story: 12 }, cuts: [...smaller(usual, 7), ['story', 6], ...smaller(7, 4.5)] } };
 };

@@ -37,9 +37,10 @@ steplap.sheet = (() => {
   // `content`: { title, about, word, verdict, reason, parts, signed }.
   function fill(place, size, content) {
     place.style.fontSize = `${size}pt`;
-    place.replaceChildren(make('h1', {}, content.title), make('p', {}, content.about), verdictLine(content), ...content.parts,
-      signatures(content.signed));
-    for (const t of place.querySelectorAll('table')) t.classList.remove('cards'); // the layout for narrow screens is not used, even if a telephone prints
+    place.replaceChildren(
+      make('h1', {}, content.title), make('p', {}, content.about), verdictLine(content), ...content.parts, signatures(content.signed));
+    for (const t of place.querySelectorAll('table'))
+      t.classList.remove('cards'); // the layout for narrow screens is not used, even if a telephone prints
   }
   // Lays out contentOf(keep) and returns what was kept. `most` contains by name what is kept if there is room; `size` is the font size in
   // points. `cuts` lists [name, reduced value] in the order in which room is made; `dear` is the name whose cuts are undone first.
@@ -47,19 +48,23 @@ steplap.sheet = (() => {
     const place = document.getElementById('sheet');
     place.classList.add('measured');
     const measure = () => (width * place.getBoundingClientRect().height) / place.getBoundingClientRect().width;
-    const isFitting = (keep) => { fill(place, keep.size, contentOf(keep)); return measure() <= height; };
-    const cutBy = (count) => ({ ...most, ...Object.fromEntries(cuts.slice(0, count)) }); // the last entry of a name applies
+    const isFitting = (keep) => {
+      fill(place, keep.size, contentOf(keep));
+      return measure() <= height;
+    };
+    const cutBy = (count) => ({...most, ...Object.fromEntries(cuts.slice(0, count)) }); // the last entry of a name applies
     // Finds the smallest sufficient number of cuts by bisection.
     let few = 0, many = cuts.length;
     while (few < many) {
       const middle = (few + many) >> 1;
-      if (isFitting(cutBy(middle))) many = middle; else few = middle + 1;
+      if (isFitting(cutBy(middle))) many = middle;
+      else few = middle + 1;
     }
     let keep = cutBy(few);
     // Undoes cuts that are not needed, the last ones first.
     const undone = cuts.slice(0, few).map(([what], i) => [what, cutBy(i)[what]]).reverse();
     for (const [what, before] of [...undone.filter(([what]) => what === dear), ...undone.filter(([what]) => what !== dear)])
-      if (isFitting({ ...keep, [what]: before })) keep = { ...keep, [what]: before };
+      if (isFitting({...keep, [what]: before })) keep = {...keep, [what]: before };
     isFitting(keep);
     place.dataset.height = measure().toFixed(1);
     place.classList.remove('measured');

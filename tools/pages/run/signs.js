@@ -15,15 +15,32 @@ steplap.signs = (() => {
     other: { word: '', colour: 'plain', d: 'M8 4A4 4 0 1 1 7.9 4Z' },
   };
   // Maps words of the summary's story to their sign.
-  const byWord = { slips: 'slip', slides: 'slip', sticks: 'stick', lifts: 'open', 'lifts off': 'open', opens: 'open', closes: 'close', touches: 'close', strikes: 'strike', hits: 'strike',
-    breaks: 'break', 'comes apart': 'apart', tips: 'tip' };
+  const byWord = {
+    slips: 'slip',
+    slides: 'slip',
+    sticks: 'stick',
+    lifts: 'open',
+    'lifts off': 'open',
+    opens: 'open',
+    closes: 'close',
+    touches: 'close',
+    strikes: 'strike',
+    hits: 'strike',
+    breaks: 'break',
+    'comes apart': 'apart',
+    tips: 'tip'
+  };
   const ofWord = (word) => byWord[word] || 'other';
   // Returns the sign as an element next to text.
-  const icon = (name) => make('svg', { viewBox: '0 0 16 16', class: `sign ${signs[name].colour}`, 'aria-hidden': 'true', 'data-sign': name }, make('path', { d: signs[name].d, 'fill-rule': 'evenodd' }));
+  const icon = (name) =>
+    make('svg', { viewBox: '0 0 16 16', class: `sign ${signs[name].colour}`, 'aria-hidden': 'true', 'data-sign': name },
+      make('path', { d: signs[name].d, 'fill-rule': 'evenodd' }));
   // Returns the sign as part of a drawing, centred at (x, y).
   function mark(name, x, y, size) {
-    const path = make('path', { d: signs[name].d, 'fill-rule': 'evenodd', transform: `translate(${x - size / 2} ${y - size / 2}) scale(${size / 16})` });
-    return make('g', { class: `sign ${signs[name].colour}`, 'data-sign': name }, make('rect', { x: x - size / 2 - 1, y: y - size / 2 - 1, width: size + 2, height: size + 2, rx: 3, class: 'behind' }), path);
+    const path = make(
+      'path', { d: signs[name].d, 'fill-rule': 'evenodd', transform: `translate(${x - size / 2} ${y - size / 2}) scale(${size / 16})` });
+    return make('g', { class: `sign ${signs[name].colour}`, 'data-sign': name },
+      make('rect', { x: x - size / 2 - 1, y: y - size / 2 - 1, width: size + 2, height: size + 2, rx: 3, class: 'behind' }), path);
   }
   // Ranks for choosing one sign that represents several, the most important first.
   const ranks = ['break', 'apart', 'tip', 'slip', 'strike', 'open', 'stick', 'close', 'free', 'other'];

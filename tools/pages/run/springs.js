@@ -33,7 +33,8 @@
       }
       for (const element of scene.elements)
         for (const shape of element.shapes)
-          if (!['friction', 'spring', 'faces'].includes(shape.type)) for (const place of shape.at) this.taken.push(this.screen(place, rest));
+          if (!['friction', 'spring', 'faces'].includes(shape.type))
+            for (const place of shape.at) this.taken.push(this.screen(place, rest));
       this.drawnAt = this.taken.map((p) => scene.toPlane(...p));
     },
     occupy(a, b) {
@@ -41,7 +42,9 @@
       const count = Math.max(1, Math.round(length(minus(b, a)) / 8));
       for (let k = 0; k <= count; ++k) this.taken.push(add(a, scaled(minus(b, a), k / count)));
     },
-    isClear(a, b) { return this.stretches.every((other) => gapBetween([a, b], other) >= 1.7 * this.u); },
+    isClear(a, b) {
+      return this.stretches.every((other) => gapBetween([a, b], other) >= 1.7 * this.u);
+    },
     // Places a spring with a length of its own next to the springs that are already there.
     chooseLane(spring, a, b) {
       const n = unit(across(minus(a, b))), shifted = (k) => [a, b].map((p) => add(p, scaled(n, k * this.u)));
@@ -55,20 +58,27 @@
       const upright = Math.abs(d[1]) > Math.abs(d[0]), down = upright ? (d[1] > 0 ? 1 : -1) : d[0] > 0 ? -1 : 1;
       const bodyA = scene.body(placeA.body), bodyB = scene.body(placeB.body), n = across(d);
       // Stops are drawn in the middle of the edge.
-      const isStopped = scene.elements.some((e) => e.shapes.some((s) => s.type === 'rail' && s.style === 'limit' && s.at[0].body === placeA.body));
+      const isStopped =
+        scene.elements.some((e) => e.shapes.some((s) => s.type === 'rail' && s.style === 'limit' && s.at[0].body === placeA.body));
       lanes.forEach((lane, order) => {
         for (const side of [down, -down]) {
           const start = add(a, scaled(n, lane * u)), e = scaled(d, side), out = this.leaves(bodyA, rest, start, e, false);
           if (out === null && order > 0) continue; // it would be next to its body
-          const from = add(start, scaled(e, out || 0)), hit = placeB.body === 'ground' ? null : this.leaves(bodyB, rest, add(from, scaled(e, 0.8 * u)), e, true);
+          const from = add(start, scaled(e, out || 0)),
+                hit = placeB.body === 'ground' ? null : this.leaves(bodyB, rest, add(from, scaled(e, 0.8 * u)), e, true);
           const isMet = hit !== null && hit > 0.8 * u && hit < 30 * u, to = add(from, scaled(e, isMet ? hit + 0.8 * u : free * u));
           const isSeen = to[0] > 3 && to[1] > 3 && to[0] < scene.width - 3 && to[1] < scene.height - scene.footHeight() - 3;
-          const cost = order + (isStopped && order === 0 ? 30 : 0) + (isMet ? 0 : 8) + (side === down ? 0 : 0.5) + (isSeen ? 0 : 20) + (this.isClear(from, to) ? 0 : 40);
+          const cost = order + (isStopped && order === 0 ? 30 : 0) + (isMet ? 0 : 8) + (side === down ? 0 : 0.5) + (isSeen ? 0 : 20) +
+            (this.isClear(from, to) ? 0 : 40);
           found.push({ from, to, isMet, cost });
         }
       });
       const best = found.reduce((x, y) => (y.cost < x.cost ? y : x)), plane = (p, body) => seenIn(rest(body), scene.toPlane(...p));
-      spring.tied = { a: { body: placeA.body, point: plane(best.from, placeA.body) }, b: { body: placeB.body, point: plane(best.to, placeB.body) }, isAnchored: !best.isMet };
+      spring.tied = {
+        a: { body: placeA.body, point: plane(best.from, placeA.body) },
+        b: { body: placeB.body, point: plane(best.to, placeB.body) },
+        isAnchored: !best.isMet
+      };
       this.occupy(best.from, best.to);
     },
     tieToAxle(spring, a, d, rest) {
@@ -80,7 +90,7 @@
       const to = [a[0] + n[0] * lane * this.u, axle[1]], edge = this.leaves(scene.body(placeA.body), rest, to, [0, -1], true);
       const from = add(to, [0, -Math.max(least * this.u, edge || 0)]), plane = (p, body) => seenIn(rest(body), scene.toPlane(...p));
       const ends = { a: { body: placeA.body, point: plane(from, placeA.body) }, b: { body: placeB.body, point: plane(to, placeB.body) } };
-      spring.tied = { ...ends, isAnchored: false };
+      spring.tied = {...ends, isAnchored: false };
       this.occupy(from, to);
       return true;
     },
@@ -95,7 +105,10 @@
       const { shape, tied, lane } = spring;
       if (tied) return [this.screen(tied.a, pose), this.screen(tied.b, pose)];
       let [a, b] = this.ends(shape, pose);
-      if (shape.direction) { const axis = this.direction(shape, pose); b = minus(a, scaled(axis, dot(axis, minus(a, b)))); }
+      if (shape.direction) {
+        const axis = this.direction(shape, pose);
+        b = minus(a, scaled(axis, dot(axis, minus(a, b))));
+      }
       const shift = scaled(unit(across(minus(a, b))), (lane || 0) * this.u);
       return [add(a, shift), add(b, shift)];
     },
@@ -103,7 +116,13 @@
     anchor(spring, a, b) {
       if (!spring.tied || !spring.tied.isAnchored) return '';
       const { u } = this, e = unit(minus(b, a)), n = scaled(across(e), 0.9 * u);
-      const strokes = this.scene.isHeld(spring.tied.b.body) ? [-1, -0.4, 0.2, 0.8].map((k) => { const p = add(b, scaled(n, k)); return path([p, add(p, add(scaled(e, 0.6 * u), scaled(n, 0.5)))]); }).join('') : '';
+      const strokes = this.scene.isHeld(spring.tied.b.body) ? [-1, -0.4, 0.2, 0.8]
+                                                                .map((k) => {
+                                                                  const p = add(b, scaled(n, k));
+                                                                  return path([p, add(p, add(scaled(e, 0.6 * u), scaled(n, 0.5)))]);
+                                                                })
+                                                                .join('')
+                                                            : '';
       return path([add(b, n), minus(b, n)]) + strokes;
     },
     // Points along the spring at rest, in pixels, at any zoom.
@@ -114,7 +133,8 @@
       const { scene } = this, symbol = this.piece(element, { class: 'symbol stop' }), body = scene.body(shape.at[0].body);
       const rest = (name) => scene.reference(name);
       this.update((t, pose) => {
-        const { u } = this, d = this.direction(shape, pose), d0 = this.direction(shape, rest), a0 = this.screen(shape.at[0], rest), b0 = this.screen(shape.at[1], rest);
+        const { u } = this, d = this.direction(shape, pose), d0 = this.direction(shape, rest), a0 = this.screen(shape.at[0], rest),
+                  b0 = this.screen(shape.at[1], rest);
         const [a, b] = this.ends(shape, pose), side = dot(across(d), minus(a, b));
         let text = '';
         [-1, 1].forEach((sign, i) => {
@@ -123,24 +143,38 @@
           const reach = this.leaves(body, rest, a0, scaled(d0, sign), false) || 0;
           const factor = scene.factorOf(shape.at[0].body, scene.seenFrom, scene.magnification);
           const along = dot(d0, minus(a0, b0)) + stop * factor * scene.scale + sign * reach;
-          const at = add(add(b, scaled(d, along)), scaled(across(d), side)), n = scaled(across(d), 1.3 * u), back = scaled(d, 0.7 * sign * u);
+          const at = add(add(b, scaled(d, along)), scaled(across(d), side)), n = scaled(across(d), 1.3 * u),
+                back = scaled(d, 0.7 * sign * u);
           if (!(Math.abs(at[0]) < 3 * scene.width && Math.abs(at[1]) < 3 * scene.height)) return;
-          text += path([add(at, n), minus(at, n)]) + [-1, -0.5, 0, 0.5].map((k) => { const p = add(at, scaled(n, k)); return path([p, add(p, add(back, scaled(n, 0.4)))]); }).join('');
+          text += path([add(at, n), minus(at, n)]) +
+            [-1, -0.5, 0, 0.5]
+              .map((k) => {
+                const p = add(at, scaled(n, k));
+                return path([p, add(p, add(back, scaled(n, 0.4)))]);
+              })
+              .join('');
         });
         symbol.setAttribute('d', text || 'M0 0');
       });
     },
     // Returns the straight lower edge (of an upright slide: the left one) under which rollers are drawn.
     hasEdge(shape) {
-      const { scene } = this, body = scene.body(shape.at[0].body), d = this.direction(shape, (name) => scene.reference(name)), isUpright = Math.abs(d[1]) > Math.abs(d[0]);
-      const points = body.outline.map((point) => steplap.geometry.apply(body.pose, point)), height = (p) => (isUpright ? p[0] : p[1]), way = (p) => (isUpright ? p[1] : p[0]);
-      const low = Math.min(...points.map(height)), near = 0.02 * body.reach, at = points.filter((p) => height(p) < low + near).map(way), span = Math.max(...at) - Math.min(...at);
-      return points.some((p, i) => { const q = points[(i + 1) % points.length]; return height(p) < low + near && height(q) < low + near && Math.abs(way(p) - way(q)) > 0.9 * span && span > 0; });
+      const { scene } = this, body = scene.body(shape.at[0].body), d = this.direction(shape, (name) => scene.reference(name)),
+                    isUpright = Math.abs(d[1]) > Math.abs(d[0]);
+      const points = body.outline.map((point) => steplap.geometry.apply(body.pose, point)), height = (p) => (isUpright ? p[0] : p[1]),
+            way = (p) => (isUpright ? p[1] : p[0]);
+      const low = Math.min(...points.map(height)), near = 0.02 * body.reach, at = points.filter((p) => height(p) < low + near).map(way),
+            span = Math.max(...at) - Math.min(...at);
+      return points.some((p, i) => {
+        const q = points[(i + 1) % points.length];
+        return height(p) < low + near && height(q) < low + near && Math.abs(way(p) - way(q)) > 0.9 * span && span > 0;
+      });
     },
     // Draws rollers under the edge of a sliding body with an outline, on a line that is hatched where it is fixed.
     rollers(element, shape) {
       const { scene } = this, rest = (name) => scene.reference(name), [placeA, placeB] = shape.at, body = scene.body(placeA.body);
-      const line = this.piece(element, { class: 'symbol track' }), rolls = [0, 1].map(() => this.piece(element, { class: 'dot roller' }, scene.elementLayer, 'circle'));
+      const line = this.piece(element, { class: 'symbol track' }),
+            rolls = [0, 1].map(() => this.piece(element, { class: 'dot roller' }, scene.elementLayer, 'circle'));
       this.update((t, pose) => {
         const { u } = this, d = this.direction(shape, rest), isUpright = Math.abs(d[1]) > Math.abs(d[0]);
         const down = isUpright ? [-1, 0] : [0, 1], n = scaled(across(d), Math.sign(dot(across(d), down)) || 1);
@@ -150,13 +184,18 @@
         const put = (s, h) => add(scaled(d, s), scaled(n, h));
         [0.22, 0.78].forEach((k, i) => {
           const [x, y] = this.screen({ body: body.name, point: plane(put(first + k * (last - first), low + r), body.name) }, pose);
-          rolls[i].setAttribute('cx', x); rolls[i].setAttribute('cy', y); rolls[i].setAttribute('r', r);
+          rolls[i].setAttribute('cx', x);
+          rolls[i].setAttribute('cy', y);
+          rolls[i].setAttribute('r', r);
         });
-        const reach = 2 * u, ground = [first - reach, last + reach].map((s) => this.screen({ body: placeB.body, point: plane(put(s, low + 2 * r), placeB.body) }, pose));
+        const reach = 2 * u, ground = [first - reach,
+          last + reach].map((s) => this.screen({ body: placeB.body, point: plane(put(s, low + 2 * r), placeB.body) }, pose));
         let text = path(ground);
         if (scene.isHeld(placeB.body)) {
-          const e = unit(minus(ground[1], ground[0])), out = scaled(across(e), Math.sign(dot(across(e), n)) || 1), size = length(minus(ground[1], ground[0]));
-          for (let s = 0.4 * u; s < size; s += u) text += path([add(ground[0], scaled(e, s)), add(ground[0], add(scaled(e, s - 0.5 * u), scaled(out, 0.7 * u)))]);
+          const e = unit(minus(ground[1], ground[0])), out = scaled(across(e), Math.sign(dot(across(e), n)) || 1),
+                size = length(minus(ground[1], ground[0]));
+          for (let s = 0.4 * u; s < size; s += u)
+            text += path([add(ground[0], scaled(e, s)), add(ground[0], add(scaled(e, s - 0.5 * u), scaled(out, 0.7 * u)))]);
         }
         line.setAttribute('d', text);
       });
@@ -176,14 +215,17 @@
           this.update((t, pose) => {
             const { u } = this, places = ends.map((point) => this.screen({ body: 'ground', point }, pose));
             const wheel = this.screen(shape.at[0], (name) => scene.reference(name)), reach = scene.width + scene.height;
-            const whole = unit(minus(places[places.length - 1], places[0])), side = dot(across(whole), minus(wheel, places[0])) > 0 ? -1 : 1;
+            const whole = unit(minus(places[places.length - 1], places[0])),
+                  side = dot(across(whole), minus(wheel, places[0])) > 0 ? -1 : 1;
             let text = '', passed = 0;
             for (let i = 1; i < places.length; i += 1) {
               const from = places[i - 1], to = places[i], d = unit(minus(to, from)), size = length(minus(to, from));
               const n = scaled(across(d), side), centre = dot(d, minus([scene.width / 2, scene.height / 2], from));
-              const first = Math.max(0, centre - reach), last = Math.min(size, centre + reach), next = (s) => Math.ceil((passed + s) / u) * u - passed;
+              const first = Math.max(0, centre - reach), last = Math.min(size, centre + reach),
+                    next = (s) => Math.ceil((passed + s) / u) * u - passed;
               if (shape.style === 'flat' && last > first) text += path([add(from, scaled(d, first)), add(from, scaled(d, last))]);
-              for (let s = next(first); s < last; s += u) text += path([add(from, scaled(d, s)), add(from, add(scaled(d, s - 0.6 * u), scaled(n, 0.8 * u)))]);
+              for (let s = next(first); s < last; s += u)
+                text += path([add(from, scaled(d, s)), add(from, add(scaled(d, s - 0.6 * u), scaled(n, 0.8 * u)))]);
               passed += size;
             }
             hatch.setAttribute('d', text || 'M0 0');

@@ -69,7 +69,9 @@
     const found = new Map(['ground', ...scene.bodies.keys()].map((name) => [name, new Set()]));
     for (const e of scene.run.drawing.elements) {
       const names = new Set([...(e.at || []).map((p) => p.body), e.limb, e.active_part].filter((name) => found.has(name)));
-      for (const a of names) for (const b of names) if (a !== b) found.get(a).add(b);
+      for (const a of names)
+        for (const b of names)
+          if (a !== b) found.get(a).add(b);
     }
     return found;
   }
@@ -205,9 +207,8 @@
     },
     isUsuallyMagnified(seenFrom) { return [...this.usualFactors(seenFrom).values()].some((f) => f > 1); },
     // `magnification`: a number for all bodies, or 'usual'.
-    factorOf(name, seenFrom, magnification) {
-      return magnification === 'usual' ? this.usualFactors(seenFrom).get(name) ?? 1 : magnification;
-    },
+    factorOf(
+      name, seenFrom, magnification) { return magnification === 'usual' ? this.usualFactors(seenFrom).get(name) ?? 1 : magnification; },
     // Returns the drawn poses at time t.
     look(t, seenFrom, magnification) {
       const cache = new Map(), compose = (a, b) => [...apply(a, b), a[2] + b[2]];
@@ -228,9 +229,13 @@
         return seen.get(name);
       };
     },
-    // Returns the drawn pose that a body would have if it were at its start pose on its carrier.
+    // Returns the drawn pose that a body would have if it were at its start pose on its carrier. Ground that passes by moves with the
+    // distance that the vehicle drives.
     ghostPose(name, pose) {
-      const carrier = this.carrierOf(name), rest = relative(this.reference(carrier), this.reference(name)), on = pose(carrier);
+      const carrier = this.carrierOf(name), rest = relative(this.reference(carrier), this.reference(name));
+      const journey = this.seenFrom === 'ground' ? null : this.journey(),
+            isPassing = Boolean(journey) && !journey.carried && this.isHeld(carrier);
+      const on = isPassing ? this.reference(carrier) : pose(carrier);
       return [...apply(on, rest), on[2] + rest[2]];
     },
   });

@@ -20,13 +20,22 @@ steplap.tables = (() => {
   function table(heads, rows, numeric = []) {
     const element = make('table', { class: 'cards' }), isNumber = (i) => numeric.includes(i);
     if (heads) {
-      const cells = heads.map((h, i) => { const th = cellOf('th', h, isNumber(i)); th.scope = 'col'; return th; });
+      const cells = heads.map((h, i) => {
+        const th = cellOf('th', h, isNumber(i));
+        th.scope = 'col';
+        return th;
+      });
       element.append(make('thead', {}, make('tr', {}, ...cells)));
     }
     const body = make('tbody');
     for (const row of rows) {
-      if (typeof row === 'string') { body.append(make('tr', { class: 'group' }, make('th', { colspan: heads ? heads.length : 2, scope: 'colgroup' }, row))); continue; }
-      const line = make('tr', {}, ...row.map((c, i) => cellOf(i === 0 ? 'th' : 'td', c, isNumber(i), i > 0 && heads ? String(heads[i] && heads[i].text !== undefined ? heads[i].text : heads[i] || '') : '')));
+      if (typeof row === 'string') {
+        body.append(make('tr', { class: 'group' }, make('th', { colspan: heads ? heads.length : 2, scope: 'colgroup' }, row)));
+        continue;
+      }
+      const line = make('tr', {},
+        ...row.map((c, i) => cellOf(i === 0 ? 'th' : 'td', c, isNumber(i),
+                     i > 0 && heads ? String(heads[i] && heads[i].text !== undefined ? heads[i].text : heads[i] || '') : '')));
       line.firstChild.scope = 'row';
       body.append(line);
     }
@@ -35,7 +44,8 @@ steplap.tables = (() => {
   }
   // A section of the page that can be opened; `isOpen`: initially open.
   function fold(title, isOpen, ...content) {
-    const box = make('details', isOpen ? { class: 'fold', open: '' } : { class: 'fold' }, make('summary', {}, make('h3', {}, title)), ...content);
+    const box =
+      make('details', isOpen ? { class: 'fold', open: '' } : { class: 'fold' }, make('summary', {}, make('h3', {}, title)), ...content);
     return box;
   }
   return { table, fold, few };

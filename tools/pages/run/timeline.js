@@ -2,10 +2,14 @@
 // beginnings and ends. Overlapping signs are merged into one with a count.
 steplap.Timeline = (() => {
   const make = steplap.make;
-  const size = 14, laneHeight = 20, thumb = 16;
+  const size = 14, laneHeight = 20, thumb = 16, causeHeight = 22; // pixels
+  const mostCauses = 3; // loads with a curve
 
   // Events that begin and end an interval.
-  const stretches = [{ begins: ['slip'], ends: ['stick', 'free', 'apart'], class: 'slipping', word: 'slips' }, { begins: ['open'], ends: ['close', 'strike'], class: 'open', word: 'is open' }];
+  const stretches = [
+    { begins: ['slip'], ends: ['stick', 'free', 'apart'], class: 'slipping', word: 'slips' },
+    { begins: ['open'], ends: ['close', 'strike'], class: 'open', word: 'is open' }
+  ];
 
   // Returns elements with events that have a sign: first those that slipped or broke, then the others in the story.
   function lanesOf(run, most) {
@@ -33,7 +37,10 @@ steplap.Timeline = (() => {
       let from = own.length && kind.ends.includes(own[0].role) && own[0].t > 0 ? 0 : null;
       for (const e of own) {
         if (kind.begins.includes(e.role)) from = from === null ? e.t : from;
-        else if (from !== null) { found.push({ from, to: e.t, kind }); from = null; }
+        else if (from !== null) {
+          found.push({ from, to: e.t, kind });
+          from = null;
+        }
       }
       if (from !== null) found.push({ from, to: end, kind });
     }
@@ -57,9 +64,9 @@ steplap.Timeline = (() => {
   }
 
   return class Timeline {
-    // `end`: end of the time axis; runs may be longer.
-    constructor(runs, end, { lanes, axis, slider, onTime }) {
-      Object.assign(this, { runs, end, box: lanes, axisBox: axis, slider, onTime });
+    // `end`: end of the time axis; runs may be longer. `causes`: the loads of each run (causes.js).
+    constructor(runs, end, { causes, lanes, axis, slider, onTime }) {
+      Object.assign(this, { runs, end, causes, box: lanes, axisBox: axis, slider, onTime });
       this.most = runs.length > 1 ? 3 : 5;
       this.lanes = runs.map((run) => ({ run, lanes: lanesOf(run, this.most) }));
       this.box.addEventListener('pointerdown', (event) => {
@@ -93,36 +100,87 @@ steplap.Timeline = (() => {
       this.measure(width);
       this.box.replaceChildren();
       const all = this.lanes.filter(({ lanes }) => lanes.length);
-      for (const { run, lanes } of this.lanes) {
+      this.lanes.forEach(({ run, lanes }, k) => {
         if (this.runs.length > 1) this.box.append(make('h4', {}, run.name));
+        this.box.append(...this.drawCauses(this.causes[k]));
         if (lanes.length) this.box.append(this.drawLanes(run, lanes));
         else if (this.runs.length > 1 || !all.length) this.box.append(make('p', { class: 'note' }, 'Nothing slipped, opened or broke.'));
-      }
+      });
       this.cursor = make('div', { class: 'time-cursor', 'aria-hidden': 'true' });
-      this.cursor.hidden = !all.length;
       this.box.append(this.cursor);
       this.drawAxis();
       // Aligns the middle of the slider's thumb with the axis.
       this.slider.style.marginLeft = `${this.left - thumb / 2}px`;
       this.slider.style.width = `${this.width - this.left - this.right + thumb}px`;
     }
+    // The loads: a sentence and a curve each.
+    drawCauses(causes) {
+      const most = this.runs.length > 1 ? 1 : mostCauses, rest = causes.length - most;
+      const shown = causes.slice(0, most).map(
+        (cause) => make('div', { class: 'cause', style: `--left:${this.left}px` }, make('p', {}, cause.sentence), this.causeCurve(cause)));
+      if (rest > 0)
+        shown.push(make('details', { class: 'cause more' }, make('summary', {}, `${rest} more load${rest > 1 ? 's' : ''}`),
+          make('p', {}, causes.slice(most).map((c) => c.sentence).join(' '))));
+      return shown;
+    }
+    // To its own scale, about zero.
+    causeCurve({ times, values, peak, sentence }) {
+      const svg = make('svg',
+        { viewBox: `0 0 ${this.width} ${causeHeight}`, width: this.width, height: causeHeight, role: 'img', 'aria-label': sentence });
+      const reaches = (sign) => (values.some((v) => sign * v > 0.02 * peak) ? 1 : 0), [up, down] = [reaches(1), reaches(-1)];
+      const y = (v) => 1 + ((causeHeight - 2) * (up * peak - v)) / ((up + down) * peak || 1),
+            points = this.thinned(times, values).map(([t, v]) => `${this.xOf(t).toFixed(1)} ${y(v).toFixed(1)}`);
+      const first = this.xOf(Math.min(times[0], this.end)), last = this.xOf(Math.min(times[times.length - 1], this.end));
+      svg.append(
+        make('path',
+          { class: 'cause-area', d: `M${first.toFixed(1)} ${y(0).toFixed(1)}L${points.join('L')}L${last.toFixed(1)} ${y(0).toFixed(1)}Z` }),
+        make('line', { class: 'lane', x1: this.left, x2: this.width - this.right, y1: y(0), y2: y(0) }),
+        make('path', { class: 'cause-curve', d: `M${points.join('L')}` }));
+      return svg;
+    }
+    // The least and the largest value of each pixel, up to the end of the axis.
+    thinned(times, values) {
+      const found = new Map();
+      times.forEach((t, i) => {
+        if (t > this.end) return;
+        const x = Math.round(this.xOf(t)), pair = found.get(x) || [[t, values[i]], [t, values[i]]];
+        if (values[i] < pair[0][1]) pair[0] = [t, values[i]];
+        if (values[i] > pair[1][1]) pair[1] = [t, values[i]];
+        found.set(x, pair);
+      });
+      return [...found.values()].flatMap((pair) => (pair[0][0] <= pair[1][0] ? pair : [pair[1], pair[0]]));
+    }
     drawLanes(run, lanes) {
       const step = this.isNarrow ? laneHeight + 14 : laneHeight, height = lanes.length * step + 2;
-      const svg = make('svg', { viewBox: `0 0 ${this.width} ${height}`, width: this.width, height, class: 'lanes', role: 'list', 'aria-label': `Events of ${run.name}` });
+      const svg = make('svg', {
+        viewBox: `0 0 ${this.width} ${height}`,
+        width: this.width,
+        height,
+        class: 'lanes',
+        role: 'list',
+        'aria-label': `Events of ${run.name}`
+      });
       lanes.forEach((lane, k) => {
         const y = k * step + (this.isNarrow ? 14 : 0) + laneHeight / 2 + 1;
-        svg.append(make('text', this.isNarrow ? { x: 2, y: y - 12, class: 'lane-name' } : { x: this.left - 12, y: y + 4, class: 'lane-name end' }, make('title', {}, lane.who), this.shortened(lane.who)));
+        svg.append(
+          make('text', this.isNarrow ? { x: 2, y: y - 12, class: 'lane-name' } : { x: this.left - 12, y: y + 4, class: 'lane-name end' },
+            make('title', {}, lane.who), this.shortened(lane.who)));
         svg.append(make('line', { x1: this.left, x2: this.width - this.right, y1: y, y2: y, class: 'lane' }));
         for (const { from, to, kind } of stretchesOf(lane, Math.min(run.end, this.end)))
-          svg.append(make('rect', { x: this.xOf(from), width: Math.max(1.5, this.xOf(to) - this.xOf(from)), y: y - 4, height: 8, class: `stretch ${kind.class}` }, make('title', {}, `${lane.who} ${kind.word}`)));
+          svg.append(make('rect',
+            { x: this.xOf(from), width: Math.max(1.5, this.xOf(to) - this.xOf(from)), y: y - 4, height: 8, class: `stretch ${kind.class}` },
+            make('title', {}, `${lane.who} ${kind.word}`)));
         for (const group of gathered(lane.events, (t) => this.xOf(t))) svg.append(this.sign(group, y));
       });
       return svg;
     }
     sign(group, y) {
       const [firstEvent] = group.events, count = group.events.length, role = steplap.signs.worst(group.events.map((e) => e.role));
-      const text = count === 1 ? firstEvent.text : `${count} events from ${firstEvent.text.replace(/^.* at /, '')}:\n${group.events.slice(0, 12).map((e) => e.text).join('\n')}${count > 12 ? '\n…' : ''}`;
-      const box = make('g', { class: 'event', role: 'listitem', 'data-t': firstEvent.t, 'data-who': firstEvent.who, 'data-count': count }, make('title', {}, text));
+      const text = count === 1 ? firstEvent.text
+                               : `${count} events from ${firstEvent.text.replace(/^.* at /, '')}:\n${
+                                   group.events.slice(0, 12).map((e) => e.text).join('\n')}${count > 12 ? '\n…' : ''}`;
+      const box = make('g', { class: 'event', role: 'listitem', 'data-t': firstEvent.t, 'data-who': firstEvent.who, 'data-count': count },
+        make('title', {}, text));
       const x = Math.min(group.x, this.width - this.right - (count > 1 ? 18 : 0)); // keeps the count inside the picture
       box.append(steplap.signs.mark(role, x, y, size));
       if (count > 1) box.append(make('text', { x: x + size / 2 + 2, y: y + 4, class: 'count' }, count > 99 ? '99+' : `×${count}`));
@@ -137,7 +195,8 @@ steplap.Timeline = (() => {
         const x = this.xOf(v / k), isLast = i === ticks.values.length - 1, isFirst = x < 20;
         svg.append(make('line', { x1: x, x2: x, y1: 0, y2: 5, class: 'tick' }));
         const anchor = x > this.width - 30 ? 'end' : isFirst ? 'start' : 'middle';
-        svg.append(make('text', { x: anchor === 'end' ? this.width - 2 : x, y: 17, class: 'tick-text', 'text-anchor': anchor }, steplap.axes.label(v, ticks.step) + (isLast ? ` ${isShort ? 'ms' : 's'}` : '')));
+        svg.append(make('text', { x: anchor === 'end' ? this.width - 2 : x, y: 17, class: 'tick-text', 'text-anchor': anchor },
+          steplap.axes.label(v, ticks.step) + (isLast ? ` ${isShort ? 'ms' : 's'}` : '')));
       });
       const worst = steplap.overview.worstOf(this.runs);
       if (worst !== null) {
@@ -165,7 +224,8 @@ steplap.Timeline = (() => {
 steplap.story = (() => {
   const make = steplap.make, first = 6;
   function line(entry, onTime) {
-    const button = make('button', { type: 'button', class: 'story-entry', 'data-from': String(entry.from) }, steplap.signs.icon(steplap.signs.ofWord(entry.what)), make('span', {}, entry.text));
+    const button = make('button', { type: 'button', class: 'story-entry', 'data-from': String(entry.from) },
+      steplap.signs.icon(steplap.signs.ofWord(entry.what)), make('span', {}, entry.text));
     button.addEventListener('click', () => onTime(entry.from));
     return make('li', {}, button);
   }
@@ -177,11 +237,13 @@ steplap.story = (() => {
     const parts = make('div', { class: 'parts' });
     box.append(parts);
     for (const run of told) {
-      const { story } = steplap.overview.of(run), list = (some) => make('ul', { class: 'story' }, ...some.map((entry) => line(entry, onTime)));
+      const { story } = steplap.overview.of(run),
+                    list = (some) => make('ul', { class: 'story' }, ...some.map((entry) => line(entry, onTime)));
       const part = make('div', {}, ...(runs.length > 1 ? [make('h4', {}, run.name)] : []));
       if (!story.length) part.append(make('p', {}, 'Nothing slipped, lifted, opened or broke.'));
       else part.append(list(story.slice(0, first)));
-      if (story.length > first) part.append(make('details', {}, make('summary', {}, `${story.length - first} more`), list(story.slice(first))));
+      if (story.length > first)
+        part.append(make('details', {}, make('summary', {}, `${story.length - first} more`), list(story.slice(first))));
       parts.append(part);
     }
   }

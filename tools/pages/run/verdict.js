@@ -1,20 +1,29 @@
 // The verdict with its reason, and a line on how reliable it is, with a folded table behind it.
 steplap.verdict = (() => {
   const make = steplap.make, { few, table } = steplap.tables, { one, instant, full } = steplap.numbers;
-  const levels = { good: 'Numerical error: small.', limited: 'Numerical error: not known to be small.', none: 'Numerical error: not known.' };
+  const levels = {
+    good: 'Numerical error: small.',
+    limited: 'Numerical error: not known to be small.',
+    none: 'Numerical error: not known.'
+  };
 
   function trustLine(run) {
     const { trust } = steplap.overview.of(run);
     const level = trust && trust.level in levels ? trust.level : 'limited';
-    return [make('span', { class: `lamp ${level}`, 'aria-hidden': 'true' }), make('strong', {}, levels[level]), ` ${trust ? trust.text : ''}`];
+    return [
+      make('span', { class: `lamp ${level}`, 'aria-hidden': 'true' }), make('strong', {}, levels[level]), ` ${trust ? trust.text : ''}`
+    ];
   }
   function card(run, isOne) {
     const overview = steplap.overview.of(run), badge = steplap.overview.badgeOf(run);
     const box = make('div', { class: 'card', 'data-run': run.name });
     if (!isOne) box.append(make('h2', { class: 'run-name' }, run.name));
-    const sign = badge.name === 'none' ? '' : make('span', { class: `badge ${badge.name}` }, badge.word); // without criteria there is no verdict
+    const sign =
+      badge.name === 'none' ? '' : make('span', { class: `badge ${badge.name}` }, badge.word); // without criteria there is no verdict
     box.append(make('p', { class: 'verdict-line' }, sign, make('span', { class: 'reason' }, overview.reason)));
-    if (overview.isOld) box.append(make('p', { class: 'note old' }, 'These results are older than this program. Run the model again to see how near it is to its limits and what happened in words.'));
+    if (overview.isOld)
+      box.append(make('p', { class: 'note old' },
+        'These results are older than this program. Run the model again to see how near it is to its limits and what happened in words.'));
     if (!isOne) box.append(make('p', { class: 'trust-line' }, ...trustLine(run)));
     return box;
   }
@@ -22,7 +31,10 @@ steplap.verdict = (() => {
   // --- the table that opens ------------------------------------------------------------------------
   function settingText(run) {
     const s = run.summary, isFixed = s.integrator === 'rk4' || s.integrator === 'moreau';
-    return `${s.integrator}, ` + (isFixed ? `step ${one(s.settings.step, 's')}` : s.settings.tolerance === null || s.settings.tolerance === undefined ? 'its usual tolerance' : `tolerance ${few(s.settings.tolerance)} for each step`);
+    return `${s.integrator}, ` +
+      (isFixed ? `step ${one(s.settings.step, 's')}`
+          : s.settings.tolerance === null || s.settings.tolerance === undefined ? 'its usual tolerance'
+                                                                                : `tolerance ${few(s.settings.tolerance)} for each step`);
   }
   function errorText(run) {
     const e = run.summary.global_error;
@@ -33,27 +45,39 @@ steplap.verdict = (() => {
   }
   function opinionText(run) {
     const o = run.summary.second_opinion;
-    return !o ? 'not asked' : o.none_because ? `none: ${o.none_because}` : o.agrees ? `${o.method} agrees` : `${o.method} disagrees: ${o.disagreement}`;
+    return !o          ? 'not asked'
+      : o.none_because ? `none: ${o.none_because}`
+      : o.agrees ? `${o.method} agrees`
+                 : `${o.method} disagrees: ${o.disagreement}`;
   }
   const list = (texts) => (texts.length ? make('ul', { class: 'caps' }, ...texts.map((text) => make('li', {}, text))) : 'nothing');
   const sourcesOf = (r) => (r.summary.findings || []).filter((f) => f.code === 'friction_by_source').map((f) => f.text);
   function rows(runs) {
     const energy = (r) => r.summary.accuracy;
     return [
-      ['run', (r) => (r.summary.completed ? `complete, 0 to ${instant(r.end, r.end)}` : `stopped at ${instant(r.end, r.end)}: ${r.summary.failure || ''}`)],
-      ['integrator', settingText],
-      ['estimated error', errorText],
-      ['second opinion', opinionText],
+      [
+        'run',
+        (r) => (r.summary.completed ? `complete, 0 to ${instant(r.end, r.end)}`
+                                    : `stopped at ${instant(r.end, r.end)}: ${r.summary.failure || ''}`)
+      ],
+      ['integrator', settingText], ['estimated error', errorText], ['second opinion', opinionText],
       ['checked by', (r) => (steplap.overview.of(r).trust?.guards || []).join(', ') || '–'],
       ['forbids “hold”', (r) => list(r.summary.judgement ? r.summary.judgement.capped_by : [])],
       ['energy residual', (r) => `${few(energy(r).energy_residual)} J, ${few(energy(r).relative_energy_residual)} of what was exchanged`],
-      ['dissipated energy', (r) => ({ text: one(energy(r).dissipated, 'J', { error: energy(r).error_dissipated }), value: energy(r).dissipated, full: full(energy(r).dissipated, 'J', energy(r).text_dissipated) })],
+      [
+        'dissipated energy', (r) => ({
+          text: one(energy(r).dissipated, 'J', { error: energy(r).error_dissipated }),
+          value: energy(r).dissipated,
+          full: full(energy(r).dissipated, 'J', energy(r).text_dissipated)
+        })
+      ],
       ['constraint residual', (r) => `${few(energy(r).max_position_residual)} m or rad`],
       ['steps, evaluations', (r) => `${r.summary.statistics.steps}, ${r.summary.statistics.evaluations}`],
       ['events', (r) => String(r.summary.statistics.events)],
       ...(runs.some((r) => r.summary.left_out) ? [['not in the model', (r) => list(r.summary.left_out || [])]] : []),
       ...(runs.some((r) => sourcesOf(r).length) ? [['unusual, with its source', (r) => list(sourcesOf(r))]] : []),
-      ['warnings', (r) => list((r.summary.findings || []).filter((f) => f.level === 'warning').map((f) => f.text))]];
+      ['warnings', (r) => list((r.summary.findings || []).filter((f) => f.level === 'warning').map((f) => f.text))]
+    ];
   }
   function buildCards(runs) {
     document.getElementById('verdict-cards').replaceChildren(...runs.map((run) => card(run, runs.length === 1)));
@@ -67,7 +91,8 @@ steplap.verdict = (() => {
   // Builds the contents of the fold, which the first picture does not need.
   function buildTrust(runs) {
     const heads = ['', ...runs.map((r) => r.name)];
-    document.getElementById('trust').append(table(runs.length > 1 ? heads : null, rows(runs).map(([name, text]) => [name, ...runs.map(text)])));
+    document.getElementById('trust').append(
+      table(runs.length > 1 ? heads : null, rows(runs).map(([name, text]) => [name, ...runs.map(text)])));
   }
   return { build, buildCards, buildTrust };
 })();

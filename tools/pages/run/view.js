@@ -24,9 +24,18 @@ steplap.View = class View {
 
   listen(scene) {
     const svg = scene.svg, touches = new Map();
-    const place = (event) => { const box = svg.getBoundingClientRect(), k = scene.width / box.width; return [(event.clientX - box.left) * k, (event.clientY - box.top) * k]; };
-    const middle = () => { const all = [...touches.values()]; return [0, 1].map((i) => all.reduce((sum, p) => sum + p[i], 0) / all.length); };
-    const spread = () => { const [a, b] = [...touches.values()]; return Math.hypot(a[0] - b[0], a[1] - b[1]); };
+    const place = (event) => {
+      const box = svg.getBoundingClientRect(), k = scene.width / box.width;
+      return [(event.clientX - box.left) * k, (event.clientY - box.top) * k];
+    };
+    const middle = () => {
+      const all = [...touches.values()];
+      return [0, 1].map((i) => all.reduce((sum, p) => sum + p[i], 0) / all.length);
+    };
+    const spread = () => {
+      const [a, b] = [...touches.values()];
+      return Math.hypot(a[0] - b[0], a[1] - b[1]);
+    };
     svg.addEventListener('wheel', (event) => {
       // The wheel scrolls the page; it zooms with Ctrl, or once the picture has been clicked.
       if (!event.ctrlKey && document.activeElement !== svg) return;
@@ -49,7 +58,8 @@ steplap.View = class View {
       this.pan(scene, to[0] - from[0], to[1] - from[1]);
       if (wide > 0) this.zoomAt(scene, spread() / wide, ...to);
     });
-    for (const name of ['pointerup', 'pointercancel', 'lostpointercapture']) svg.addEventListener(name, (event) => touches.delete(event.pointerId));
+    for (const name of ['pointerup', 'pointercancel', 'lostpointercapture'])
+      svg.addEventListener(name, (event) => touches.delete(event.pointerId));
     svg.addEventListener('dblclick', () => this.reset());
     svg.addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.altKey || event.metaKey) return;
@@ -66,8 +76,10 @@ steplap.View = class View {
 };
 
 steplap.save = (() => {
-  const looks = ['fill', 'fill-opacity', 'stroke', 'stroke-width', 'stroke-dasharray', 'stroke-linecap', 'stroke-linejoin', 'stroke-opacity', 'opacity', 'vector-effect',
-    'font-family', 'font-size', 'font-weight', 'text-anchor', 'dominant-baseline', 'paint-order', 'display'];
+  const looks = [
+    'fill', 'fill-opacity', 'stroke', 'stroke-width', 'stroke-dasharray', 'stroke-linecap', 'stroke-linejoin', 'stroke-opacity', 'opacity',
+    'vector-effect', 'font-family', 'font-size', 'font-weight', 'text-anchor', 'dominant-baseline', 'paint-order', 'display'
+  ];
   // Offers a file as a download.
   function file(name, type, content) {
     const link = document.createElement('a'), url = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type }));
@@ -98,7 +110,8 @@ steplap.save = (() => {
     const { text, width, height } = alone(drawing), image = new Image(), canvas = document.createElement('canvas');
     image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;
     await image.decode();
-    canvas.width = magnified * width; canvas.height = magnified * height;
+    canvas.width = magnified * width;
+    canvas.height = magnified * height;
     canvas.getContext('2d').drawImage(image, 0, 0, canvas.width, canvas.height);
     return canvas;
   }
@@ -121,7 +134,12 @@ steplap.save = (() => {
 
 // Icons are drawn instead of typed, because a font may lack the sign.
 steplap.icon = (name) => {
-  const shapes = { play: 'M4 2L13 8L4 14Z', pause: 'M4 2H7V14H4ZM9 2H12V14H9Z', closer: 'M7 2H9V7H14V9H9V14H7V9H2V7H7Z', further: 'M2 7H14V9H2Z',
-    whole: 'M2 2H6V4H4V6H2ZM10 2H14V6H12V4H10ZM2 10H4V12H6V14H2ZM12 10H14V14H10V12H12Z' };
+  const shapes = {
+    play: 'M4 2L13 8L4 14Z',
+    pause: 'M4 2H7V14H4ZM9 2H12V14H9Z',
+    closer: 'M7 2H9V7H14V9H9V14H7V9H2V7H7Z',
+    further: 'M2 7H14V9H2Z',
+    whole: 'M2 2H6V4H4V6H2ZM10 2H14V6H12V4H10ZM2 10H4V12H6V14H2ZM12 10H14V14H10V12H12Z'
+  };
   return steplap.make('svg', { viewBox: '0 0 16 16', class: 'icon', 'aria-hidden': 'true' }, steplap.make('path', { d: shapes[name] }));
 };

@@ -19,7 +19,10 @@ study.answers = (() => {
   }
   // Orders the results of several methods: those without remarks first, then those with an interval, then by its width.
   const rank = (f) => [f.status ? 1 : 0, f.low === null || f.high === null ? 1 : 0, f.high - f.low || 0];
-  const byRank = (a, b) => { const [p, q] = [rank(a), rank(b)], k = p.findIndex((v, i) => v !== q[i]); return k < 0 ? 0 : p[k] - q[k]; };
+  const byRank = (a, b) => {
+    const [p, q] = [rank(a), rank(b)], k = p.findIndex((v, i) => v !== q[i]);
+    return k < 0 ? 0 : p[k] - q[k];
+  };
   const largest = (list) => [...list].sort((a, b) => Math.abs(b.value) - Math.abs(a.value)).slice(0, 1);
   const best = (list) => [...list].sort(byRank).slice(0, 1);
   const all = (list) => list;
@@ -27,15 +30,18 @@ study.answers = (() => {
   // [role, selection of a subject's findings, sentence]. The first role that the study has gives the answer. Other probabilities than the
   // plain one are corrections of the same method.
   const sentences = [
-    ['probability', (list) => best(list.filter((f) => !f.quantity.includes('('))),
-      (f) => `The probability of '${f.subject}' is ${chance(f)}.`],
+    [
+      'probability', (list) => best(list.filter((f) => !f.quantity.includes('('))),
+      (f) => `The probability of '${f.subject}' is ${chance(f)}.`
+    ],
     ['beta', best, (f) => `The reliability index of '${f.subject}' is ${quantity(f)}${between(f)}.`],
     ['critical', all, (f) => `The critical value of '${f.subject}' is ${quantity(f)}${between(f)}.`],
     ['swing', largest, (f) => `'${f.subject}' depends most on '${f.variable}': it goes from ${interval(f)} over its range.`],
     ['elasticity', largest, (f) => `'${f.subject}' depends most on '${f.variable}': it changes by ${quantity(f)} % for one per cent.`],
     ['total', largest, (f) => `'${f.subject}' depends most on '${f.variable}', which makes up ${chance(f)} of its variance.`],
     ['mu*', largest, (f) => `'${f.subject}' depends most on '${f.variable}': it changes by ${quantity(f)}${between(f)} on average.`],
-    ['mean', all, (f) => `The mean of '${f.subject}' is ${quantity(f)}${between(f)}.`]];
+    ['mean', all, (f) => `The mean of '${f.subject}' is ${quantity(f)}${between(f)}.`]
+  ];
   function bySubject(list) {
     const groups = new Map();
     for (const f of list) groups.set(f.subject, [...(groups.get(f.subject) || []), f]);
@@ -43,8 +49,8 @@ study.answers = (() => {
   }
   // Names the fitted variables in one sentence.
   function fitted(found) {
-    const values = found.filter((f) => f.method === 'fit' && f.role === 'base' && isKnown(f))
-      .map((f) => `${f.subject} ${quantity(f)}${between(f)}`);
+    const values =
+      found.filter((f) => f.method === 'fit' && f.role === 'base' && isKnown(f)).map((f) => `${f.subject} ${quantity(f)}${between(f)}`);
     return values.length ? [`The record fits best with ${values.join(', ')}.`] : [];
   }
   function needed(found) {
@@ -66,8 +72,8 @@ study.answers = (() => {
   }
   // Describes the lowest and highest value of each response.
   function reached(found) {
-    return bySubject(found.filter((f) => f.role === 'extreme' && isKnown(f))).filter((ends) => ends.length === 2)
-      .map(([low, high]) => `'${low.subject}' goes from ${quantity(low)} to ${quantity(high)}.`);
+    return bySubject(found.filter((f) => f.role === 'extreme' && isKnown(f))).filter((ends) => ends.length === 2).map(([low,
+      high]) => `'${low.subject}' goes from ${quantity(low)} to ${quantity(high)}.`);
   }
   function list() {
     const found = data.findings.filter((f) => !f.place);

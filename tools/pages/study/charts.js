@@ -1,7 +1,15 @@
 // Charts by Plotly in one style; they shrink to the paper width when the page is printed.
 study.charts = (() => {
   const { make } = study;
-  const colours = { blue: '#0072b2', vermillion: '#d55e00', green: '#007a5a', orange: '#e69f00', purple: '#a8487c', sky: '#56b4e9', grey: '#6b6b6b' };
+  const colours = {
+    blue: '#0072b2',
+    vermillion: '#d55e00',
+    green: '#007a5a',
+    orange: '#e69f00',
+    purple: '#a8487c',
+    sky: '#56b4e9',
+    grey: '#6b6b6b'
+  };
   const cycle = [colours.blue, colours.vermillion, colours.green, colours.purple, colours.orange, colours.sky, colours.grey];
   const all = [];
   const isTouched = matchMedia('(pointer: coarse), (max-width: 600px)').matches;
@@ -17,31 +25,50 @@ study.charts = (() => {
     const style = getComputedStyle(document.documentElement), colour = (name) => style.getPropertyValue(`--${name}`).trim();
     const found = { 'font.color': colour('ink'), paper_bgcolor: colour('paper'), plot_bgcolor: colour('paper') };
     for (const name of Object.keys(layout).filter((key) => /^[xy]axis\d*$/.test(key)))
-      Object.assign(found, { [`${name}.gridcolor`]: colour('grid'), [`${name}.linecolor`]: colour('axis'), [`${name}.zerolinecolor`]: colour('axis') });
+      Object.assign(
+        found, { [`${name}.gridcolor`]: colour('grid'), [`${name}.linecolor`]: colour('axis'), [`${name}.zerolinecolor`]: colour('axis') });
     if (isPaper) document.documentElement.classList.remove('paper');
     return found;
   }
 
   // Only those of Plotly's buttons that contact no server: one would upload the chart.
-  const config = { responsive: true, displaylogo: false, ...(isTouched ? { displayModeBar: false } : {}), plotlyServerURL: '', modeBarButtons: [['toImage', 'zoom2d', 'pan2d', 'zoomIn2d', 'zoomOut2d', 'resetScale2d']] };
+  const config = {
+    responsive: true,
+    displaylogo: false,
+    ...(isTouched ? { displayModeBar: false } : {}),
+    plotlyServerURL: '',
+    modeBarButtons: [['toImage', 'zoom2d', 'pan2d', 'zoomIn2d', 'zoomOut2d', 'resetScale2d']]
+  };
 
   // Charts are drawn after everything added with them is in place, because only then the columns have their final width.
   const waiting = [];
-  const draw = () => { for (const one of waiting.splice(0)) one(); };
+  const draw = () => {
+    for (const one of waiting.splice(0)) one();
+  };
 
   // Adds a chart with its heading at the end of `parent`. A click on a point whose customdata is a sample's place shows that sample.
   function add(parent, { title = '', note = '', traces, layout = {}, height = 320, name = '' }) {
     const canvas = make('div', { class: 'canvas' });
-    const box = make('div', { class: 'chart', 'data-chart': name || title }, ...(title ? [make('h3', {}, title)] : []), canvas, ...(note ? [make('p', { class: 'note' }, note)] : []));
+    const box = make('div', { class: 'chart', 'data-chart': name || title }, ...(title ? [make('h3', {}, title)] : []), canvas,
+      ...(note ? [make('p', { class: 'note' }, note)] : []));
     parent.append(box);
-    const whole = { height, margin: { l: 58, r: 14, t: 12, b: 44 }, font: { family: '"DejaVu Sans", "Segoe UI", Arial, sans-serif', size: 12 },
-      hovermode: 'closest', dragmode: isTouched ? false : 'zoom', showlegend: traces.filter((t) => t.showlegend !== false && t.name).length > 1,
-      legend: { orientation: 'h', y: 1.02, yanchor: 'bottom', x: 0, font: { size: 11 } }, bargap: 0.3, ...layout };
+    const whole = {
+      height,
+      margin: { l: 58, r: 14, t: 12, b: 44 },
+      font: { family: '"DejaVu Sans", "Segoe UI", Arial, sans-serif', size: 12 },
+      hovermode: 'closest',
+      dragmode: isTouched ? false : 'zoom',
+      showlegend: traces.filter((t) => t.showlegend !== false && t.name).length > 1,
+      legend: { orientation: 'h', y: 1.02, yanchor: 'bottom', x: 0, font: { size: 11 } },
+      bargap: 0.3,
+      ...layout
+    };
     if (!waiting.length) queueMicrotask(draw);
     waiting.push(() => {
       for (const [path, value] of Object.entries(look(whole, false))) {
         const [part, key] = path.split('.');
-        if (key) whole[part] = { ...whole[part], [key]: value }; else whole[part] = value;
+        if (key) whole[part] = {...whole[part], [key]: value };
+        else whole[part] = value;
       }
       Plotly.newPlot(canvas, traces, whole, config);
       canvas.on('plotly_click', (event) => {
@@ -54,21 +81,37 @@ study.charts = (() => {
   }
   // Returns the points of a band between two curves as one closed outline.
   function band(x, low, high, colour, more = {}) {
-    return { x: [...x, ...[...x].reverse()], y: [...high, ...[...low].reverse()], type: 'scatter', mode: 'none', fill: 'toself', fillcolor: `${colour}33`, hoverinfo: 'skip', ...more };
+    return {
+      x: [...x, ...[...x].reverse()],
+      y: [...high, ...[...low].reverse()],
+      type: 'scatter',
+      mode: 'none',
+      fill: 'toself',
+      fillcolor: `${colour}33`,
+      hoverinfo: 'skip',
+      ...more
+    };
   }
   // Removes all charts of a box, so that others can replace them.
   function clear(box) {
-    for (let i = all.length; i-- > 0;) if (box.contains(all[i].canvas)) Plotly.purge(all.splice(i, 1)[0].canvas);
+    for (let i = all.length; i-- > 0;)
+      if (box.contains(all[i].canvas)) Plotly.purge(all.splice(i, 1)[0].canvas);
     box.replaceChildren();
   }
   // Fits charts to the width of the paper, dark on white, or back.
   function fit(isPaper) {
     for (const { canvas, box } of all) {
       const isWide = box.parentElement.classList.contains('one');
-      Plotly.relayout(canvas, { ...look(canvas.layout, isPaper), ...(isPaper ? { width: isWide ? 690 : 335, autosize: false } : { width: null, autosize: true }) });
+      Plotly.relayout(canvas, {
+        ...look(canvas.layout, isPaper),
+        ...(isPaper ? { width: isWide ? 690 : 335, autosize: false } : { width: null, autosize: true })
+      });
     }
   }
-  scheme.addEventListener('change', () => { for (const { canvas } of all) if (canvas.layout) Plotly.relayout(canvas, look(canvas.layout, false)); });
+  scheme.addEventListener('change', () => {
+    for (const { canvas } of all)
+      if (canvas.layout) Plotly.relayout(canvas, look(canvas.layout, false));
+  });
   window.addEventListener('beforeprint', () => fit(true));
   window.addEventListener('afterprint', () => fit(false));
   return { add, clear, band, safe, axis, colours, cycle, ink, all };

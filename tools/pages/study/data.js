@@ -29,13 +29,15 @@ study.data = (() => {
     constructor(entry) {
       Object.assign(this, entry);
       this.values = new Float64Array(bytesOf(entry.data).buffer);
-      if (this.factor !== 1) for (let i = 0; i < this.values.length; ++i) this.values[i] *= this.factor;
+      if (this.factor !== 1)
+        for (let i = 0; i < this.values.length; ++i) this.values[i] *= this.factor;
       this.head = withUnit(this.name, this.unit);
       delete this.data;
     }
     text(i) {
       const value = this.values[i];
-      if (this.name === 'variant' && raw.about.variants.length) return value === 0 ? 'as it is' : raw.about.variants[value - 1] || plain(value);
+      if (this.name === 'variant' && raw.about.variants.length)
+        return value === 0 ? 'as it is' : raw.about.variants[value - 1] || plain(value);
       return plain(value);
     }
     get varies() { return this.values.some((v) => v !== this.values[0] && !(Number.isNaN(v) && Number.isNaN(this.values[0]))); }
@@ -52,12 +54,28 @@ study.data = (() => {
   function shownText() {
     if (shown === raw.samples.total) return `All ${raw.samples.total} samples are on this page.`;
     const part = (k, noun) => (classes[k].all ? [`${classes[k].shown} of ${classes[k].all} ${noun}`] : []);
-    return `This page holds ${shown} of ${raw.samples.total} samples, evenly taken: ${[...part(2, 'runs that failed'), ...part(1, 'failures'), ...part(0, 'others')].join(', ')}. ` +
+    return `This page holds ${shown} of ${raw.samples.total} samples, evenly taken: ${
+               [...part(2, 'runs that failed'), ...part(1, 'failures'), ...part(0, 'others')].join(', ')}. ` +
       'Distributions and estimates are of all of them; steplap study export writes all.';
   }
-  return { ...raw, columns, numbers, status, limits, named, fate, shown, shownText, plain, pretty, withUnit,
-    reasonOf: (i) => raw.samples.reasons[reason[i]], statusOf: (i) => raw.statuses[status[i]],
-    variables: columns.filter((c) => c.role === 'variable'), outputs: columns.filter((c) => c.role !== 'variable' && c.role !== 'cost') };
+  return {
+    ...raw,
+    columns,
+    numbers,
+    status,
+    limits,
+    named,
+    fate,
+    shown,
+    shownText,
+    plain,
+    pretty,
+    withUnit,
+    reasonOf: (i) => raw.samples.reasons[reason[i]],
+    statusOf: (i) => raw.statuses[status[i]],
+    variables: columns.filter((c) => c.role === 'variable'),
+    outputs: columns.filter((c) => c.role !== 'variable' && c.role !== 'cost')
+  };
 })();
 
 // Cells: a text, a node, or { text, class }; `numeric` lists the columns with numbers.
@@ -69,7 +87,13 @@ study.table = (heads, rows, numeric = []) => {
     return make(name, classes ? { class: classes } : {}, isPart ? content.text : content === undefined || content === null ? '' : content);
   };
   const element = make('table');
-  if (heads) element.append(make('thead', {}, make('tr', {}, ...heads.map((h, i) => { const th = cell('th', h, i); th.scope = 'col'; return th; }))));
-  element.append(make('tbody', {}, ...rows.map((row) => make('tr', row.class ? { class: row.class } : {}, ...row.map((c, i) => cell('td', c, i))))));
+  if (heads)
+    element.append(make('thead', {}, make('tr', {}, ...heads.map((h, i) => {
+      const th = cell('th', h, i);
+      th.scope = 'col';
+      return th;
+    }))));
+  element.append(
+    make('tbody', {}, ...rows.map((row) => make('tr', row.class ? { class: row.class } : {}, ...row.map((c, i) => cell('td', c, i))))));
   return element;
 };

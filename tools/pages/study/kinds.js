@@ -11,11 +11,22 @@ study.kind = (() => {
     sample: { title: 'samples', isAnswer: (f) => f.role === 'probability' || f.quantity === 'mean', isCounted: true },
     reliability: { title: 'reliability', isAnswer: one('probability', 'beta'), isCounted: true, showsLaws: true },
     // Designs that change one variable at a time show nothing in a plane.
-    sensitivity: { title: 'sensitivity', isAnswer: none, plane: ['tornado', 'elasticity'].includes(data.about.settings.method) ? '' : 'scatter' },
+    sensitivity:
+      { title: 'sensitivity', isAnswer: none, plane: ['tornado', 'elasticity'].includes(data.about.settings.method) ? '' : 'scatter' },
     critical: { title: 'critical values', isAnswer: one('critical'), plane: 'critical' },
     design: { title: 'design', isAnswer: one('holds from', 'holds to'), plane: 'design', isJudged: false, beginsWithSentence: true },
     map: { title: 'map', isAnswer: none, plane: 'map' },
     needs: { title: 'what the scene needs', isAnswer: none, plane: '' },
-    fit: { title: 'fit', isJudged: true } };
-  return { title: data.kind, isAnswer: () => true, plane: 'scatter', isJudged: false, isCounted: false, showsLaws: false, beginsWithSentence: false, ...(Object.hasOwn(kinds, data.kind) ? kinds[data.kind] : {}) };
+    fit: { title: 'fit', isJudged: true }
+  };
+  return {
+    title: data.kind,
+    isAnswer: () => true,
+    plane: 'scatter',
+    isJudged: false,
+    isCounted: false,
+    showsLaws: false,
+    beginsWithSentence: false,
+    ...(Object.hasOwn(kinds, data.kind) ? kinds[data.kind] : {})
+  };
 })();
