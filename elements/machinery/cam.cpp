@@ -113,7 +113,8 @@ public:
     for (const ElementData& entry : entries) {
       turns.add(entry.a, entry.b, turning_of(entry.measure));
       turns.add(entry.cam, entry.b);
-      if (!entry.curve.knots().empty()) turns.add(entry.cam, entry.b, TurnKnots{entry.zero, entry.curve.knots(), true});
+      if (!entry.curve.knots().empty())
+        turns.add(entry.cam, entry.b, TurnKnots{entry.zero, entry.curve.knots(), entry.curve.is_periodic()});
     }
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {

@@ -16,7 +16,7 @@ namespace {
 constexpr double k_turn = 2.0 * std::numbers::pi;
 constexpr double k_turn_digits = 1e-9;             // rad: digits of a file
 constexpr double k_rounded_angle = 1e-12 * k_turn; // rad: by which an angle of the curve may be rounded
-constexpr double k_same_lift = 1e-12;              // relative difference of lifts a turn apart
+constexpr int k_turns = 20;                        // either way in which lobes of a formula are sought that not every turn has
 
 // Computes h'' at the points from the continuity of h' at each. For a periodic curve the last point is the first one.
 std::vector<double> curvatures(const std::vector<Vec2>& p, bool is_periodic) {
@@ -48,60 +48,56 @@ std::vector<double> curvatures(const std::vector<Vec2>& p, bool is_periodic) {
   return found;
 }
 
-// Divides a turn until the enclosure of the formula over each part is close to its values at the ends and in the middle of the part.
+// Divides turns until the formula is over each part either almost constant or close to a polynomial, whose shape the samples of a step
+// show. Its values at some angles cannot decide that: one of them may lie on a lobe by chance.
 class LobeSearch {
 public:
-  explicit LobeSearch(const FormulaTree& tree) : tree_(tree), values_(tree.size()), enclosures_(tree.size()) {
+  explicit LobeSearch(const FormulaTree& tree) : tree_(tree), enclosures_(tree.size()) {
     for (const FormulaNode& node : tree)
       if (node.op == FormulaOp::operand) operands_ = std::max(operands_, static_cast<std::size_t>(node.operand) + 1);
   }
 
-  std::vector<double> knots() {
-    const Interval all = range(0.0, k_turn);
+  // Returns the ends of the parts of one turn, ascending; none if steps of one radian suffice.
+  std::vector<double> knots(int turn) {
+    const double begin = turn * k_turn, end = begin + k_turn;
+    const Interval all = enclosure(begin, end).range;
     least_ = k_least_lobe * (all.high - all.low);
     if (!std::isfinite(least_)) least_ = 0.0;
-    halve(0.0, k_turn, 0);
-    // Steps turn by at most one radian, so longer or slightly shorter intervals need no knots.
-    if (deepest_ < k_shallow) return {};
-    if (!knots_.empty()) knots_.push_back(knots_.front() + k_turn);
-    return knots_;
+    narrowest_ = k_turn;
+    knots_.clear();
+    halve(begin, end);
+    return narrowest_ > k_wide ? std::vector<double>{} : knots_;
   }
 
 private:
-  static constexpr int k_shallow = 4, k_deepest = 14; // halvings: 0.39 rad, 0.4 mrad
-  static constexpr double k_least_lobe = 1e-4;        // of the lift
-  static constexpr double k_beyond = 3.0;             // by this factor of the sampled values' range the bounds may exceed it
+  static constexpr double k_wide = 0.4, k_narrowest = 4e-4; // rad: a step turns by at most one radian; narrower parts are not divided
+  static constexpr double k_least_lobe = 1e-4;              // of the lift in this turn
+  static constexpr double k_close = 0.1; // error of the polynomial relative to its range; a lobe between samples is larger
 
-  double value(double angle) {
-    const std::vector<double> operands(operands_, angle);
-    return value_of(tree_, operands.data(), 0.0, values_.data());
-  }
-  Interval range(double begin, double end) {
+  Enclosure<k_enclosure_degree> enclosure(double begin, double end) {
     std::array<double, k_enclosure_degree + 1> c{};
     c[0] = 0.5 * (begin + end);
     c[1] = 0.5 * (end - begin);
     using Angle = Enclosure<k_enclosure_degree>;
     const std::vector<Angle> operands(operands_, Angle::of_polynomial(c, k_rounded_angle));
-    return evaluate<EnclosingNumbers<k_enclosure_degree>>(tree_, operands.data(), Angle::of_number(0.0), enclosures_.data()).range;
+    return evaluate<EnclosingNumbers<k_enclosure_degree>>(tree_, operands.data(), Angle::of_number(0.0), enclosures_.data());
   }
-  void halve(double begin, double end, int depth) {
+  void halve(double begin, double end) {
+    const Enclosure<k_enclosure_degree> lift = enclosure(begin, end);
+    const double size = lift.range.high - lift.range.low;
+    narrowest_ = std::min(narrowest_, end - begin);
+    if (end - begin < k_narrowest || size <= least_ || lift.rest <= k_close * size) return;
     const double middle = 0.5 * (begin + end);
-    const auto [low, high] = std::minmax({value(begin), value(middle), value(end)});
-    const double beyond = k_beyond * (high - low) + least_;
-    const Interval may_be = range(begin, end);
-    if (depth == k_deepest || (may_be.low >= low - beyond && may_be.high <= high + beyond)) return;
-    deepest_ = std::max(deepest_, depth + 1);
-    halve(begin, middle, depth + 1);
+    halve(begin, middle);
     knots_.push_back(middle);
-    halve(middle, end, depth + 1);
+    halve(middle, end);
   }
 
   const FormulaTree& tree_;
   std::size_t operands_ = 0;
-  std::vector<double> values_, knots_;
+  std::vector<double> knots_;
   std::vector<Enclosure<k_enclosure_degree>> enclosures_;
-  double least_ = 0.0;
-  int deepest_ = 0;
+  double least_ = 0.0, narrowest_ = 0.0;
 };
 
 } // namespace
@@ -114,8 +110,17 @@ LiftCurve::LiftCurve(std::vector<Vec2> points)
     : points_(std::move(points)), curvature_(curvatures(points_, is_whole_turn(points_))), is_periodic_(is_whole_turn(points_)) {}
 
 LiftCurve::LiftCurve(FormulaProgram formula, const FormulaTree& tree) : formula_(std::move(formula)) {
-  const bool is_repeated = std::abs(of_formula(k_turn).value - of_formula(0.0).value) <= k_same_lift * std::abs(of_formula(0.0).value);
-  if (is_repeated) formula_knots_ = LobeSearch(tree).knots();
+  LobeSearch search(tree);
+  const std::vector<double> first = search.knots(0);
+  is_periodic_ = true;
+  for (int turn = -k_turns; turn <= k_turns; ++turn) {
+    const std::vector<double> knots = search.knots(turn);
+    is_periodic_ = is_periodic_ && knots.size() == first.size();
+    formula_knots_.insert(formula_knots_.end(), knots.begin(), knots.end());
+  }
+  if (!is_periodic_) return;
+  formula_knots_ = first;
+  if (!first.empty()) formula_knots_.push_back(first.front() + k_turn);
 }
 
 std::vector<double> LiftCurve::knots() const {

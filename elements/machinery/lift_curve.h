@@ -30,9 +30,12 @@ public:
 
   /// Returns the lift and its derivatives at an angle, rad.
   [[nodiscard]] Lift at(double angle) const;
-  /// Returns the angles of the points. For a formula: angles between which it has no lobe that its values at both ends and in the middle do
-  /// not show; the last is the first plus a whole turn. Empty for a formula without narrow lobes, or with another period.
+  /// Returns the angles of the points. For a formula: angles between which it is almost constant or close to a polynomial, none if steps of
+  /// one radian show all lobes; those of 20 turns either way if the lobes differ from turn to turn. If is_periodic(), the last is the first
+  /// plus a whole turn.
   [[nodiscard]] std::vector<double> knots() const;
+  /// Returns true if the knots are the same in each turn.
+  [[nodiscard]] bool is_periodic() const { return is_periodic_; }
   /// Returns true if the points span one whole turn.
   [[nodiscard]] static bool is_whole_turn(const std::vector<Vec2>& points);
 
@@ -42,7 +45,7 @@ private:
 
   std::vector<Vec2> points_;
   std::vector<double> curvature_; ///< h'' at the points
-  bool is_periodic_ = false;
+  bool is_periodic_ = false;      ///< the points, or the knots of the formula, are the same in each turn
   std::optional<FormulaProgram> formula_;
   std::vector<double> formula_knots_;
 };

@@ -62,6 +62,15 @@ struct TableSource {
   bool is_usable = true;
 };
 
+// A study file names its kind at the top; each of its tables would be an unknown key of a model.
+void refuse_study(const Document& document) {
+  const Node* const kind = document.root.find("kind");
+  if (!kind || kind->type != Node::Type::text) return;
+  throw ModelError(
+      {{kind->where_key(), "this is a study of kind '" + kind->text() +
+                               "', not a model: `steplap study` reads and runs it; check the model that its key 'model' names"}});
+}
+
 class Reader {
 public:
   Reader(Document document, const Catalogue& catalogue)
@@ -69,6 +78,7 @@ public:
 
   /// Returns the model as given and the completed model; `text`, if not null, receives the text.
   std::pair<Model, Model> read(const std::vector<std::string>& overrides, std::string* text = nullptr) {
+    refuse_study(document_);
     settle(document_, overrides, names_, catalogue_);
     if (text) *text = standalone_text(document_, catalogue_);
     refuse_control_characters(document_);

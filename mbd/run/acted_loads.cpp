@@ -90,9 +90,9 @@ std::string seconds(double t) { return rounded_text(t) + " s"; }
 // Tells whether one signal has acted completely in one of its uses, and creates the finding if not.
 class Judge {
 public:
-  // `growth` and `result` are null before a run.
-  Judge(const LoadedModel& loaded, double end, const ReserveHistory* growth, const RunResult* result)
-      : loaded_(loaded), model_(loaded.model), slack_(k_same_time * end), growth_(growth), result_(result) {}
+  // `growth` and `result` are null before a run. `has_course`: some load changes with time, so the run is as long as its course asks.
+  Judge(const LoadedModel& loaded, double end, const ReserveHistory* growth, const RunResult* result, bool has_course)
+      : loaded_(loaded), model_(loaded.model), slack_(k_same_time * end), growth_(growth), result_(result), has_course_(has_course) {}
 
   std::optional<Finding> finding(const ActingSignal& use, const LoadPart& part) const {
     const SignalCourse& course = part.course;
@@ -100,7 +100,7 @@ public:
     if (is_steady ? part.signal->value(0.0) == 0.0 : course.is_level()) return std::nullopt;
     if (is_steady && !use.is_named_at_start) return std::nullopt; // such as "off", which an action may set
     if (use.spans.empty()) return never_begun(use, part.entry->definition->name, part.entry->definition->where);
-    if (is_steady) return std::nullopt;
+    if (is_steady) return of_constant(use, "signal '" + part.entry->definition->name + "'", part.entry->definition->where);
     if (std::any_of(use.spans.begin(), use.spans.end(), [&](const SignalSpan& span) { return has_acted(span, part); }))
       return growing(use.spans.back(), part);
     double at_full_size = 0.0; // s, summed over all intervals if the signal is switched repeatedly
@@ -108,6 +108,21 @@ public:
       at_full_size += std::max(0.0, std::min(span.to, course.ends) - std::max(span.from, course.full));
     if (course.period > 0.0 && at_full_size >= SignalCourse::k_periods * course.period) return std::nullopt;
     return not_acted(use, part);
+  }
+
+  // A constant load has no course. It has acted if what it moves has come to rest, or to its worst, before an action ends it; the end of the
+  // run has to wait for that only if no other load says how long the run should be.
+  std::optional<Finding> of_constant(const ActingSignal& use, const std::string& what, const Location& where) const {
+    if (!growth_ || use.spans.empty()) return std::nullopt;
+    const SignalSpan& last = use.spans.back();
+    const bool is_cut = last.cut.action && last.cut.verb != ActionVerb::stop;
+    const ElementEntry& entry = model_.elements[use.element];
+    if (uses_time(entry) || (!is_cut && (has_course_ || !entry.kind->has_constant_load))) return std::nullopt;
+    const auto has_acted = [&](const SignalSpan& span) { // an even acceleration may go on for ever
+      return has_settled(span.from, span) || (!is_cut && has_stopped_growing(0.5 * (span.from + span.to), span.to));
+    };
+    if (std::any_of(use.spans.begin(), use.spans.end(), has_acted)) return std::nullopt;
+    return warning("load_too_short", what + " acts from t = " + seconds(last.from) + " on, and " + level_text(use, last), where);
   }
 
   std::optional<Finding> never_begun(const ActingSignal& use, const std::string& signal, const Location& where) const {
@@ -180,9 +195,11 @@ private:
     return growth_->count() > 0;
   }
 
-  // Returns true if a constant load has had its full effect. An action that ends it defines its intended duration.
+  // Returns true if a load at a constant level has had its full effect. Where an action ends it, only extremes are known of the motion.
   [[nodiscard]] bool has_settled(double since, const SignalSpan& span) const {
-    if (!growth_ || !result_ || (span.cut.action && span.cut.verb != ActionVerb::stop)) return true;
+    if (!growth_ || !result_ || (span.cut.action && !span.cut.action->reason.empty())) return true;
+    if (span.cut.action && span.cut.verb != ActionVerb::stop)
+      return span.to > since && (growth_->count() == 0 || has_stopped_growing(0.5 * (since + span.to), span.to));
     const Motions motions(loaded_, *result_);
     if (motions.rests()) return true;
     if (!has_stopped_growing(0.5 * (since + span.to), span.to)) return false;
@@ -225,6 +242,11 @@ private:
     return span.cut.action ? "Let the action happen later, or say in its 'reason' why the load is meant to end there" : longer;
   }
 
+  [[nodiscard]] std::string level_text(const ActingSignal& use, const SignalSpan& last) const {
+    return cut_text(use, last) + ": what it moves has not come to rest by then. " +
+           remedy(last, "Let the run go on ('end' of [simulation])");
+  }
+
   [[nodiscard]] Finding not_acted(const ActingSignal& use, const LoadPart& part) const {
     const SignalCourse& course = part.course;
     const Location& where = part.entry->definition->where;
@@ -264,10 +286,7 @@ private:
                          rounded_text(course.period, 3) + " s when " + cut +
                          ", and what it does has not come to repeat itself: ten are asked. " + remedy(last, let_run),
                      where);
-    return warning("load_too_short",
-                   name + " is level from t = " + seconds(course.full) + " on, and " + cut +
-                       ": what it moves has not come to rest by then. " + remedy(last, let_run),
-                   where);
+    return warning("load_too_short", name + " is level from t = " + seconds(course.full) + " on, and " + level_text(use, last), where);
   }
 
   const LoadedModel& loaded_;
@@ -275,7 +294,18 @@ private:
   double slack_;                 ///< s
   const ReserveHistory* growth_; ///< null before a run
   const RunResult* result_;      ///< null before a run
+  bool has_course_;
 };
+
+// Returns true if some load changes with time.
+bool have_course(const Model& model, const std::vector<ActingSignal>& uses) {
+  Parts parts(model);
+  const auto changes = [&](const ActingSignal& use) {
+    const std::vector<LoadPart> all = parts.of(use.signal);
+    return std::any_of(all.begin(), all.end(), [](const LoadPart& part) { return !part.signal->is_constant(); });
+  };
+  return std::any_of(uses.begin(), uses.end(), changes) || std::any_of(model.elements.begin(), model.elements.end(), uses_time);
+}
 
 std::vector<Finding> findings_of_uses(const LoadedModel& loaded, const std::vector<ActingSignal>& uses, const Judge& judge) {
   Parts parts(loaded.model);
@@ -284,8 +314,9 @@ std::vector<Finding> findings_of_uses(const LoadedModel& loaded, const std::vect
   for (const ActingSignal& use : uses) {
     if (use.signal.empty()) {
       const Element& element = *loaded.model.elements[use.element].element;
-      if (!use.spans.empty()) continue;
-      if (auto finding = judge.never_begun(use, "", element.where)) findings.push_back(std::move(*finding));
+      auto finding = use.spans.empty() ? judge.never_begun(use, "", element.where)
+                                       : judge.of_constant(use, "load '" + element.name + "'", element.where);
+      if (finding) findings.push_back(std::move(*finding));
       continue;
     }
     for (const LoadPart& part : parts.of(use.signal)) {
@@ -300,15 +331,16 @@ std::vector<Finding> findings_of_uses(const LoadedModel& loaded, const std::vect
 
 std::vector<Finding> loads_beyond_end(const LoadedModel& loaded) {
   const double end = loaded.model.simulation.end;
-  return findings_of_uses(loaded, acting_signals_without_actions(loaded.model, end), Judge(loaded, end, nullptr, nullptr));
+  return findings_of_uses(loaded, acting_signals_without_actions(loaded.model, end), Judge(loaded, end, nullptr, nullptr, false));
 }
 
 std::vector<Finding> loads_not_acted(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
   if (!result.stop_reason.empty()) return {}; // an element that came apart ended the run; the verdict reports it
   const ReserveHistory growth(result,
                               result.growth.empty() ? std::vector<LimitedChannel>{} : limited_channels(loaded.model, result, judgement));
-  const Judge judge(loaded, result.final_state.t, &growth, &result);
-  std::vector<Finding> findings = findings_of_uses(loaded, acting_signals(loaded.model, result), judge);
+  const std::vector<ActingSignal> uses = acting_signals(loaded.model, result);
+  const Judge judge(loaded, result.final_state.t, &growth, &result, have_course(loaded.model, uses));
+  std::vector<Finding> findings = findings_of_uses(loaded, uses, judge);
   for (Finding& finding : late_formulas(loaded, result)) findings.push_back(std::move(finding));
   return findings;
 }

@@ -7,8 +7,9 @@
 //   signal with an end     its end comes while its element acts
 //   harmonics, sea, road   SignalCourse::k_periods mean periods have passed at full size; two suffice if the last one raised the
 //                          utilisation of each criterion by less than 0.01
-//   ramp and hold          nothing moves any more; or the second half of the time at full size raised the utilisation of each criterion
-//                          by less than 0.01, and some utilisation is above zero or bodies move uniformly; or an action ends it
+//   ramp and hold,         nothing moves any more; or the second half of the time at full size raised the utilisation of each criterion
+//   constant               by less than 0.01, and some utilisation is above zero, bodies move uniformly, or an action ends it. A constant
+//                          load asks for no longer run if others change with time
 //   formula of time        it changes within the run, or it does not change after the end either
 //
 // An action with a `reason` that cuts off a load is intended; such a load is not reported.

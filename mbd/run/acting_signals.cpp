@@ -46,6 +46,13 @@ public:
       if (step.verb == ActionVerb::set && is_signal(element, step.field)) {
         end(element, step.field, t, cut);
         name(element, step.field, step.value, t);
+      } else if (step.verb == ActionVerb::set && model_.elements[element].kind->has_constant_load) {
+        if (is_zero(step.value)) {
+          end(element, "", t, cut);
+          now_.erase({element, ""});
+        } else {
+          now_.try_emplace({element, ""}, Now{&use(element, "", ""), t});
+        }
       }
     }
   }
@@ -102,8 +109,9 @@ private:
 
   void end(std::size_t element, const std::string& field, double t, const SignalCut& cut) {
     const auto found = now_.find({element, field});
-    if (found == now_.end() || !acts_[element] || !(t > found->second.since)) return;
+    if (found == now_.end() || !acts_[element]) return;
     std::vector<SignalSpan>& spans = found->second.use->spans;
+    if (!(t > found->second.since) && !spans.empty()) return;                      // an empty span only tells what ended a load at once
     const bool goes_on = !spans.empty() && spans.back().to == found->second.since; // it was set to the value that it already had
     if (goes_on) spans.back().to = t, spans.back().cut = cut;
     else spans.push_back({found->second.since, t, cut});

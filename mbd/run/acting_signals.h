@@ -28,7 +28,7 @@ struct ActingSignal {
   std::string field;                  ///< name of the field
   std::string signal;                 ///< name of the signal; "" for loads given by constants only
   bool is_named_at_start = false;     ///< true if the element names the signal itself, false if only an action assigns it
-  std::vector<SignalSpan> spans;      ///< ascending in time; empty if the signal never acted
+  std::vector<SignalSpan> spans;      ///< ascending in time; empty if the signal never acted; a first one may have no length
   std::vector<const Action*> waiting; ///< if it never acted: actions that would have started it, but did not happen
 };
 

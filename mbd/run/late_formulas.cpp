@@ -8,6 +8,7 @@
 #include "mbd/model/action.h"
 #include "mbd/model/formula_fields.h"
 #include "mbd/simulation/run_record.h"
+#include "mbd/system/own_states.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,15 +16,6 @@
 #include <optional>
 
 namespace steplap {
-
-namespace {
-
-constexpr int k_samples = 200;    // samples within the run; as many shortly after its end, and in a geometric sequence further on
-constexpr double k_near = 10.0;   // run lengths over which the first samples after the end are evenly spaced
-constexpr double k_larger = 1.25; // relative to the run; peaks of sums of harmonics differ by less between intervals
-constexpr double k_far = 100.0;   // run lengths within which a load reaches its full size, if it has one
-constexpr double k_behind = 1e4;  // run lengths up to the last sample
-constexpr double k_alike = 1e-9;  // relative to the largest value; smaller differences are rounding
 
 bool uses_time(const ElementEntry& entry) {
   if (as_action(*entry.element)) return false;
@@ -39,14 +31,27 @@ bool uses_time(const ElementEntry& entry) {
   return false;
 }
 
-// Computes the force of an element at other times, with the bodies in their final state.
+namespace {
+
+constexpr int k_samples = 200;    // samples within the run; as many shortly after its end, and in a geometric sequence further on
+constexpr double k_near = 10.0;   // run lengths over which the first samples after the end are evenly spaced
+constexpr double k_larger = 1.25; // relative to the run; peaks of sums of harmonics differ by less between intervals
+constexpr double k_far = 100.0;   // run lengths within which a load reaches its full size, if it has one
+constexpr double k_behind = 1e4;  // run lengths up to the last sample
+constexpr double k_alike = 1e-9;  // relative to the largest value; smaller differences are rounding
+
+// Computes the force of an element, or the rate of a state, at other times, with the bodies in their final state.
 class AtOtherTimes {
 public:
-  AtOtherTimes(const System& system, const State& state, const std::string& element) : system_(system), state_(state), dynamics_(system) {
+  AtOtherTimes(const Model& model, const System& system, const State& state, const std::string& element)
+      : system_(system), state_(state), dynamics_(system) {
     for (const Channel& channel : system.channels)
       if (channel.name.starts_with(element + ".") && channel.codes.empty() && !channel.is_on_request) channels_.push_back(&channel);
     for (std::size_t u = 0; u < system.units.size(); ++u)
       if (system.element_names[static_cast<std::size_t>(system.units[u].element)] == element) units_.push_back(u);
+    const std::vector<const OwnState*> states = own_states(model);
+    for (std::size_t i = 0; i < states.size(); ++i)
+      if (states[i]->name == element) inner_.push_back(static_cast<std::size_t>(own_state_group(system)->first_inner) + i);
     y_.resize(static_cast<std::size_t>(system.largest_dimension()));
     dy_.resize(y_.size());
     dynamics_.set_left_limit_time(std::numeric_limits<double>::infinity());
@@ -62,6 +67,8 @@ public:
     if (!units_.empty()) snapshot = evaluate();
     std::vector<double> values;
     for (const Channel* const channel : channels_) values.push_back(channel->value(snapshot));
+    const double* const inner_rate = dy_.data() + 2 * dynamics_.coordinate_count();
+    for (const std::size_t i : inner_) values.push_back(inner_rate[i]);
     return values;
   }
 
@@ -77,7 +84,7 @@ private:
   State state_;
   Dynamics dynamics_;
   std::vector<const Channel*> channels_;
-  std::vector<std::size_t> units_;
+  std::vector<std::size_t> units_, inner_; ///< in System::units and State::inner
   std::vector<double> y_, dy_;
 };
 
@@ -148,7 +155,7 @@ std::vector<Finding> late_formulas(const LoadedModel& loaded, const RunResult& r
   for (const ElementEntry& entry : loaded.model.elements) {
     if (!uses_time(entry)) continue;
     try {
-      AtOtherTimes at(*loaded.system, result.final_state, entry.element->name);
+      AtOtherTimes at(loaded.model, *loaded.system, result.final_state, entry.element->name);
       const std::optional<LateEffect> late = late_look(at, end);
       if (!late) continue;
       const std::string what = late->is_first ? "begins to depend on the time by" : "is larger than in the whole run at";

@@ -94,6 +94,21 @@ std::optional<double> builds_up_in(const ReserveHistory& history, std::size_t i,
 
 } // namespace
 
+namespace {
+
+// Returns the second derivative at the end of a coordinate of a body, such as "box.x", where it makes the rate grow; else 0.
+double growing_acceleration(const RangeIndex& ranges, const ChannelRange& range) {
+  const std::string& name = range.channel->name;
+  for (const auto& [coordinate, acceleration] : {std::pair{".x", ".ax"}, {".y", ".ay"}, {".theta", ".alpha"}}) {
+    if (!name.ends_with(coordinate)) continue;
+    const ChannelRange* const found = ranges.find(name.substr(0, name.rfind('.')) + acceleration);
+    return found && found->final * range.final_rate > 0.0 ? found->final : 0.0;
+  }
+  return 0.0;
+}
+
+} // namespace
+
 std::vector<Finding> growing_criteria(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
   constexpr double k_still_worst = 1e-6; // relative to the range; extremes are located to this accuracy
   const double length = result.final_state.t;
@@ -101,11 +116,12 @@ std::vector<Finding> growing_criteria(const LoadedModel& loaded, const RunResult
   std::unordered_set<std::string> known;
   const std::vector<LimitedChannel> all = limited_channels(loaded.model, result, judgement);
   const ReserveHistory history(result, all);
+  const RangeIndex ranges(result.ranges);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const LimitedChannel& limited = all[i];
     const ChannelRange& range = result.ranges[limited.channel];
     const double slack = k_still_worst * (range.high.value - range.low.value), rate = range.final_rate;
-    const double then = range.final + rate * length;
+    const double then = range.final + (rate + 0.5 * growing_acceleration(ranges, range) * length) * length;
     const bool rises = rate > 0.0 && range.final >= range.high.value - slack && then >= limited.largest;
     const bool falls = rate < 0.0 && range.final <= range.low.value + slack && then <= limited.least;
     const std::string &unit = range.channel->unit, &name = range.channel->name;

@@ -6,6 +6,7 @@
 #include "mbd/model/signal_network.h"
 #include "mbd/run/loaded_model.h"
 #include "mbd/run/model_entries.h"
+#include "mbd/system/actions.h"
 
 #include <algorithm>
 #include <array>
@@ -158,6 +159,15 @@ void note_turns(const ModelEntry& entry, std::vector<Finding>& findings) {
 std::vector<Finding> implausible_friction(const LoadedModel& loaded) {
   std::vector<Finding> findings;
   for (const ElementEntry& entry : loaded.model.elements) check_friction(entry, findings);
+  const ActionGroup* const actions = action_group(*loaded.system);
+  for (const ActionGroup::ElementData& action : actions ? actions->entries : std::vector<ActionGroup::ElementData>{})
+    for (const ActionStep& step : action.steps) {
+      if (step.verb != ActionVerb::set || !loaded.model.elements[static_cast<std::size_t>(step.target)].kind->friction) continue;
+      Model then = loaded.model;
+      const ElementEntry& entry = then.elements[static_cast<std::size_t>(step.target)];
+      entry.kind->fields.find(step.field)->set(entry.element.get(), step.value);
+      check_friction(entry, findings);
+    }
   return findings;
 }
 

@@ -24,6 +24,7 @@ namespace {
 // progress of the motion.
 constexpr double k_same_instant = 1e-13;
 constexpr int k_max_events_at_once = 60;
+constexpr double k_least_rest = 1e-8; // relative to the run
 constexpr long k_steps_between_checks = 1L << 16;
 // Relative amount by which a sticking joint may exceed its limit. The mode problem determines wrenches to 1e-9 of the capacities, and
 // events are located to rounding; a thousand times that is an error.
@@ -237,12 +238,19 @@ std::string RunLeg::owner_of(int slot) const {
   return element < 0 ? "" : std::string(system_.element_names[element]);
 }
 
+// After an event the next one is found from 1e-4 of a step on, and a step of a sliding mode of formulas may last to the end of the run. Each
+// event then leaves all but 1e-4 of the rest. What is below a part in 10⁹ of the run is passed in one step, with the last modes.
+bool RunLeg::is_sliding_mode_at_end() const {
+  return events_at_once_ >= k_max_events_at_once && options_.end - last_event_ <= k_least_rest * options_.end;
+}
+
 void RunLeg::guard_against_chatter(double t, const std::vector<int>& fired) {
   const bool is_same = t - last_event_ <= k_same_instant * std::max(system_.scale.time(), std::abs(t));
   events_at_once_ = is_same ? events_at_once_ + 1 : 0;
   last_event_ = t;
   ++statistics_.events;
   if (events_at_once_ < k_max_events_at_once && statistics_.events - kinks_ < options_.max_events) return;
+  if (is_sliding_mode_at_end()) return;
   std::ostringstream message;
   message.precision(12);
   message << (events_at_once_ >= k_max_events_at_once ? "events repeat without end at t = "
@@ -431,7 +439,7 @@ bool RunLeg::pass_step() {
   check_finite();
   const double share = integrator_->is_adaptive() ? integrator_->turns_kept(dynamics_) : 1.0;
   if ((share < 1.0 && integrator_->shorten(dynamics_, share)) || (formula_search_ && ends_at_peak())) return false;
-  const bool is_event = finder_.find(*integrator_, dynamics_, handler_.fresh());
+  const bool is_event = !is_sliding_mode_at_end() && finder_.find(*integrator_, dynamics_, handler_.fresh());
   if (finder_.is_step_withdrawn() || !integrator_->resolves_slips(dynamics_, is_event ? finder_.theta() : 1.0, finder_.state().data()))
     return false;
   if (is_event) {

@@ -92,6 +92,7 @@ private:
   void note_stepped(const State& before, const State& after, double located_within);
   void note_passed(double t0, double t1);
   [[nodiscard]] std::string owner_of(int slot) const;
+  [[nodiscard]] bool is_sliding_mode_at_end() const;
   void guard_against_chatter(double t, const std::vector<int>& fired);
   void guard_against_crawl();
   [[noreturn]] void fail_infinite(double t) const;

@@ -341,9 +341,11 @@ std::vector<SwitchScale> scales_of(const MotionFormula& formula, const Evaluatio
   FormulaProgram::Bits bits{0, 0};
   formula.find_bits(e, own, bits);
   const std::vector<double> gains = formula.gains(e, own, bits.values);
-  std::vector<SwitchScale> scales(gains.size());
+  // Differences of numbers that have underflowed, such as of exp(-800), change their sign with each of their few digits.
+  constexpr double k_underflow = 1e-290;
+  std::vector<SwitchScale> scales(gains.size(), {1.0, k_underflow});
   for (std::size_t s = 0; s < gains.size(); ++s)
-    if (gains[s] > 0.0 && !program.is_comparison(static_cast<int>(s))) scales[s] = {1.0 / gains[s], k_met};
+    if (gains[s] > k_underflow && !program.is_comparison(static_cast<int>(s))) scales[s] = {1.0 / gains[s], k_met};
   return scales;
 }
 

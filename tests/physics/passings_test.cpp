@@ -189,6 +189,26 @@ Passing random_cam(RandomNumber& own) {
   return passing;
 }
 
+// A lobe by formula, h exp(−k (1 − cos(φ − φ_top))): it touches where it exceeds its value at the start by the gap, at
+// |φ − φ_top| = acos(1 − ln(h/lift)/k).
+Passing random_cam_by_formula(RandomNumber& own) {
+  const double rate = own.decades(0.0, 2.477), height = own.between(1e-3, 0.02), gap = height * own.between(0.01, 0.9),
+               sharpness = own.decades(1.5, 5.0), top = own.between(0.7, k_turn - 0.7); // half a lobe is 0.55 rad at most
+  const double lift = gap + height * std::exp(-sharpness * (1.0 - std::cos(top)));
+  const double half = std::acos(1.0 - std::log(height / lift) / sharpness);
+  Passing passing;
+  passing.text = k_no_gravity + body("shaft", "mass = 1.0; inertia = 1e6; angular_velocity = " + digits(rate)) +
+                 element("revolute", "pin", "a = 'shaft'") + body("follower", "mass = 1.0; inertia = 1.0; position = [0.0, 1.0]") +
+                 element("prismatic", "guide", "a = 'follower'; axis = [0.0, 1.0]") +
+                 element("cam", "it",
+                         "a = 'follower'; cam = 'shaft'; stiffness = 1e5; gap = " + digits(gap) + "; formula = \"" + metres(height) +
+                             " * exp(-" + digits(sharpness) + " * (1 - cos(value - " + digits(top) + ")))\"");
+  passing.first = (top - half) / rate;
+  passing.end = std::max(k_turn * own.decades(0.0, 2.0) / rate, 1.05 * passing.first);
+  passing.off = (1e-9 + 1e-12 / (lift * sharpness * std::sin(half))) / rate; // 1e-12 m of rounding, divided by the slope
+  return passing;
+}
+
 // Two arms that turn at rates of their own and meet with their ends, after many turns or never. The first time is found by steps that
 // the distance of the ends cannot use up.
 Passing random_meeting(RandomNumber& own) {
@@ -253,6 +273,26 @@ Passing random_gate(RandomNumber& own) {
   passing.text += "\"\ndo = ['stop']\n";
   passing.first = std::max(enters[0], enters[1]);
   passing.end = own.between(1.2, 5.0) * (t + 2.0 * width);
+  passing.off = 1e-9 / v + 1e-12 * t;
+  return passing;
+}
+
+// As a gate, by bells in x and y that are above 0.5 within `half` of their middles; far from these both underflow.
+Passing random_bells(RandomNumber& own) {
+  const double v = own.decades(0.0, 2.0), direction = own.between(0.2, 1.3), vx = v * std::cos(direction), vy = v * std::sin(direction);
+  const double t = own.between(0.5, 2.0), half = own.decades(-5.0, -2.0); // s, m
+  const double x = vx * t, y = vy * t + half * own.between(-0.5, 0.5), width = half / std::sqrt(std::log(2.0));
+  const auto bell = [&](const std::string& coordinate, double middle) {
+    return "exp(-((flier." + coordinate + " - " + metres(middle) + ") / " + metres(width) + ")^2)";
+  };
+  Passing passing;
+  passing.text =
+      k_no_gravity + body("flier", "mass = 1.0; inertia = 1.0; velocity = " + point(vx, vy)) + "[[action]]\nname = 'it'\nwhen = \"" +
+      (own.chance(0.5) ? "min(" + bell("x", x) + ", " + bell("y", y) + ") > 0.5" : bell("x", x) + " > 0.5 && " + bell("y", y) + " > 0.5") +
+      "\"\ndo = ['stop']\n";
+  passing.first = std::max((x - half) / vx, (y - half) / vy);
+  if (passing.first > std::min((x + half) / vx, (y + half) / vy)) passing.first = std::numeric_limits<double>::infinity();
+  passing.end = own.between(1.2, 5.0) * t;
   passing.off = 1e-9 / v + 1e-12 * t;
   return passing;
 }
@@ -378,7 +418,10 @@ TEST_CASE("what the end of an arm touches in even rotation is found by every met
   for (const std::string& kind : kinds()) check_all(kind, cases(), [&](RandomNumber& own) { return random_passing(kind, own); });
 }
 
-TEST_CASE("lobes of cams are found by every method") { check_all("cam", 2 * cases(), random_cam); }
+TEST_CASE("lobes of cams are found by every method") {
+  check_all("cam", 2 * cases(), random_cam);
+  check_all("cam by formula", 2 * cases(), random_cam_by_formula);
+}
 
 TEST_CASE("two arms that turn evenly meet where they do, after however many turns") { check_all("meeting", 2 * cases(), random_meeting); }
 
@@ -386,7 +429,10 @@ TEST_CASE("what is flown past straight is found by every method") {
   check_all("flight", 2 * cases(), [](RandomNumber& own) { return random_flight(own, false); });
 }
 
-TEST_CASE("a gate of several comparisons is passed by no method unseen") { check_all("gate", 2 * cases(), random_gate); }
+TEST_CASE("a gate of several comparisons is passed by no method unseen") {
+  check_all("gate", 2 * cases(), random_gate);
+  check_all("bells", 2 * cases(), random_bells);
+}
 
 TEST_CASE("a force or a rate by formula that acts for an instant acts") {
   for (const char* kind : {"gaussian", "lorentzian", "state", "box", "triangle", "circle"}) check_fields(kind, cases());
@@ -407,6 +453,10 @@ TEST_CASE("the knots of a lift by formula lie about its narrow lobes, and a harm
   };
   CHECK(knots("'10 mm' * (1 - cos(value))") == 0);
   CHECK(knots("'10 mm' * sin(3 * value)") == 0);
+  CHECK(knots("'10 mm' * sin(20 * value)") >= 20);                              // a wave is shorter than a step
+  CHECK(knots("'1 mm' * value + '10 mm' * exp(-((value - 10) / 0.01)^2)") > 5); // a lobe in the second turn only
+  // A lobe of 5 mrad at 11/16 of a turn: a place at which a turn is halved lies on it.
+  CHECK(knots("'10 mm' * exp(-65536 * (1 - cos(value - 4.3236)))") > 5);
   const std::size_t narrow = knots("'10 mm' * exp(-(sin((value - 3.3) / 2) / 0.002)^2)");
   CHECK(narrow > 5); // halvings from a turn to the lobe of 4 mrad
   CHECK(narrow < 200);

@@ -169,6 +169,8 @@ TEST_CASE("a formula of the time that begins behind the end has not acted") {
            "[[element]]\nkind = \"force\"\nname = \"push\"\na = \"b\"\ncoordinate = \"x\"\nformula = \"" +
            formula + "\"\n[[acceptance]]\nname = \"stays\"\nchannel = \"b.x\"\nwithin = 0.001\n";
   };
+  const std::string state = "[[state]]\nname = \"s\"\nrate = \"t > '5 s' ? '1 1/s' : '0 1/s'\"\n";
+  CHECK(has(run_of(scene("s * '500 N'") + state), "load_behind_end"));
   for (const char* const late : {"t > '5 s' ? '200 N' : '0 N'", "t < '2 s' ? '0 N' : '10 N/s' * (t - '2 s')",
                                  "'10 N' - '1 N s/m' * rate + (t > '300 s' ? '200 N' : '0 N')"}) {
     CAPTURE(late);
@@ -242,6 +244,92 @@ name = "l"
   }
 }
 
+namespace {
+
+// 100 kg on a rail with friction of 300 N; what `load` does is up to it.
+std::string box_on_rail(double end, double within, const std::string& load) {
+  return "[simulation]\nend = " + std::to_string(end) + R"(
+[[body]]
+name = "b"
+mass = 100.0
+inertia = 10.0
+[[element]]
+kind = "prismatic"
+name = "rail"
+a = "b"
+axis = [1.0, 0.0]
+[[element]]
+kind = "joint_friction"
+name = "f"
+a = "b"
+coordinate = "x"
+holds = 300.0
+[[acceptance]]
+name = "stays"
+channel = "b.x"
+within = )" +
+         std::to_string(within) + "\n" + load;
+}
+std::string action(const std::string& step, const std::string& more = "") {
+  return "[[action]]\nname = \"q\"\nwhen = \"5 ms\"\ndo = [\"" + step + "\"]\n" + more;
+}
+
+} // namespace
+
+TEST_CASE("a constant load that an action or the end cuts off while what it moves still moves has not acted") {
+  // 500 N against 300 N: 2 m/s² for 5 ms, then 3 m/s² against it: 42 µm in all. Without the action it would slide 1 m within 1 s.
+  const std::string element = "[[element]]\nname = \"l\"\n", steady = "[[signal]]\nname = \"p\"\nkind = \"constant\"\nvalue = 500.0\n";
+  const std::string load = element + "kind = \"load\"\nat = \"b\"\nforce = [500.0, 0.0]\n";
+  const std::pair<std::string, std::string> ways[] = {
+      {load, "release l"},
+      {load, "set l.force = [0, 0]"},
+      {load, "stop"},
+      {steady + element + "kind = \"load\"\nat = \"b\"\nforce_x = \"p\"\n", "release l"},
+      {element + "kind = \"motor\"\na = \"b\"\ncoordinate = \"x\"\nconstant_effort = 500.0\n", "release l"},
+      {element + "kind = \"force\"\na = \"b\"\ncoordinate = \"x\"\nformula = \"'500 N'\"\n", "release l"}};
+  for (const auto& [one, step] : ways) {
+    CAPTURE(one);
+    CAPTURE(step);
+    const Report report = run_of(box_on_rail(1.0, 0.1, one + action(step)));
+    CHECK(report.judgement.verdict == Verdict::open);
+    CHECK(has(report, "load_too_short"));
+    CHECK(run_of(box_on_rail(1.0, 0.1, one + action(step, "reason = \"the tug lasts 5 ms\"\n"))).judgement.verdict == Verdict::hold);
+  }
+  CHECK(has(run_of(box_on_rail(0.005, 0.1, load)), "load_too_short"));
+  // The mass of 1 kg swings out within half a period of 1 s: at 5 ms it has hardly begun to, after 20 s it rests.
+  const double static_way = 1.0 / std::pow(2.0 * 3.14159265358979, 2);
+  const std::string one = "[[signal]]\nname = \"f\"\nkind = \"constant\"\nvalue = 1.0\n";
+  CHECK(has(run_of(swing(1.0, 0.2, 30.0, 2.0 * static_way, one + action("release pull"))), "load_too_short"));
+  const std::string late = "[[action]]\nname = \"q\"\nwhen = \"20 s\"\ndo = [\"release pull\"]\n";
+  CHECK(run_of(swing(1.0, 0.2, 30.0, 2.0 * static_way, one + late)).judgement.verdict == Verdict::hold);
+}
+
+TEST_CASE("a load that an action takes away at the start has not acted") {
+  const std::string pulse = "kind = \"half_sine\"\npeak = 500.0\nstart = 0.3\nduration = 0.2\n";
+  const std::string load = "[[signal]]\nname = \"p\"\n" + pulse +
+                           "[[signal]]\nname = \"low\"\nkind = \"half_sine\"\npeak = 100.0\nduration = 0.2\n" +
+                           "[[element]]\nkind = \"load\"\nname = \"l\"\nat = \"b\"\nforce_x = \"p\"\n[[action]]\nname = \"q\"\nwhen = "
+                           "\"b.x > '-1 m'\"\ndo = [\"";
+  for (const char* const step : {"set l.force_x = low", "release l"}) {
+    CAPTURE(step);
+    const Report report = run_of(box_on_rail(1.0, 0.001, load + step + "\"]\n"));
+    CHECK(report.judgement.verdict == Verdict::open);
+    CHECK(has(report, "load_never_acts"));
+  }
+}
+
+TEST_CASE("a slide under a constant force is open if it would pass its limit within as long a time again") {
+  // A pulse of 400 N on 100 kg for 2 s, and friction of 300 N: 0.5 t² m, 0.125 m at the end and 0.5 m at twice that.
+  const auto slide = [](double within) {
+    return run_of(box_on_rail(0.5, within,
+                              "[[signal]]\nname = \"p\"\nkind = \"constant\"\nvalue = 400.0\n[[signal]]\nname = \"w\"\nkind = "
+                              "\"half_sine\"\npeak = 1e-9\nduration = 0.1\n[[signal]]\nname = \"s\"\nkind = \"sum\"\nsignals = [\"p\", "
+                              "\"w\"]\nfactors = [1.0, 1.0]\n[[element]]\nkind = \"load\"\nname = \"l\"\nat = \"b\"\nforce_x = \"s\"\n"));
+  };
+  CHECK(has(slide(0.45), "criterion_still_grows"));
+  CHECK_FALSE(has(slide(0.6), "criterion_still_grows"));
+}
+
 TEST_CASE("a swing that builds up by itself is open until it repeats") {
   // x'' − 2 x' + 100 x = 0 from 1 mm/s: amplitude 0.1 mm exp(t), 14.8 mm at 5 s. With 2 x' instead it decays from the first swing on.
   const auto scene = [](const std::string& push, double within) {
@@ -277,11 +365,17 @@ name = "f"
 a = "b"
 coordinate = "x"
 holds = 300.0
+drags = 1.0
+[[signal]]
+name = "shove"
+kind = "half_sine"
+peak = 400.0
+duration = 0.5
 [[element]]
 kind = "load"
 name = "push"
 at = "b"
-force = [400.0, 0.0]
+force_x = "shove"
 [[acceptance]]
 name = "speed"
 channel = "b.vx"

@@ -106,6 +106,19 @@ TEST_CASE("a load that does not slide by an implausible friction is no load that
   CHECK(low_loader({}).findings.empty());
 }
 
+TEST_CASE("friction that an action sets is held to the same") {
+  const auto scene = [](const std::string& mu) {
+    return load_model_text(scene_with_friction("coulomb_stick", 0.3, "") +
+                               "[[action]]\nname = \"q\"\nwhen = \"0.1 s\"\ndo = [\"set "
+                               "x.static_friction = " +
+                               mu + "\"]\n[simulation]\nend = 1.0\n",
+                           "scene.toml");
+  };
+  CHECK(found(findings_before(*scene("3")), "implausible_friction"));
+  CHECK(found(findings_before(*scene("0.9")), "high_friction"));
+  CHECK_FALSE(found(findings_before(*scene("0.4")), "high_friction"));
+}
+
 TEST_CASE("a radius of gyration far beyond all that is known of a body is found, and none of an ordinary body is") {
   CHECK(low_loader({"body.tank.mass=40"}).judgement.verdict == Verdict::open);
   // A body on two springs of random distance; its radius of gyration is between a tenth and three times that of the springs' ends.
