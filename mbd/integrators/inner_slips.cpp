@@ -104,7 +104,7 @@ bool TimeStepping::slips_inside(Dynamics& dynamics, double t1, double tolerance)
       slips_any = slips_any || (holds_at_end(part.friction) && usage[i] >= 1.0);
     }
     is_made = holds_any;
-    if (!is_made || slips_any) break; // further places cannot change the answer
+    if (!is_made || slips_any) break; // further places cannot change the answer, unless a part up to them is impossible
   }
   residual_ = residual;
   for (std::size_t f = 0; is_made && f < sticking_now_.size(); ++f)
