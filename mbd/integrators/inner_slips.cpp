@@ -84,7 +84,8 @@ bool TimeStepping::slips_inside(Dynamics& dynamics, double t1, double tolerance)
   glance_usage_.assign(system_.frictions.size(), {});
   bool is_made = true;
   State& probe = probe_state();
-  for (int i = 0; i < k_glances && is_made; ++i) {
+  const auto holds_at_end = [&](std::size_t f) { return sticking_now_[f].is_near && glance_usage_[f].back() < 1.0; };
+  for (const int i : {k_glances - 1, 0, 1}) { // the end first, as nothing is hidden if nothing holds there
     probe = start_;
     const double end = i + 1 == k_glances ? t1 : start_.t + k_places[i] * h;
     glance_ = k_glance * h;
@@ -94,15 +95,20 @@ bool TimeStepping::slips_inside(Dynamics& dynamics, double t1, double tolerance)
       is_made = false; // the part as a whole was possible
     }
     glance_ = 0.0;
-    if (is_made)
-      for (const FrictionPart& part : parts_) glance_usage_[part.friction][i] = usage_of(dynamics.evaluation(), part);
+    if (!is_made) break;
+    bool holds_any = false, slips_any = false;
+    for (const FrictionPart& part : parts_) {
+      std::array<double, k_glances>& usage = glance_usage_[part.friction];
+      usage[i] = usage_of(dynamics.evaluation(), part);
+      holds_any = holds_any || holds_at_end(part.friction);
+      slips_any = slips_any || (holds_at_end(part.friction) && usage[i] >= 1.0);
+    }
+    is_made = holds_any;
+    if (!is_made || slips_any) break; // further places cannot change the answer, unless a part up to them is impossible
   }
   residual_ = residual;
-  const auto slips = [&](std::size_t f) {
-    return sticking_now_[f].is_near && glance_usage_[f].back() < 1.0 && top_of(glance_usage_[f]) >= 1.0;
-  };
   for (std::size_t f = 0; is_made && f < sticking_now_.size(); ++f)
-    if (slips(f)) return true;
+    if (holds_at_end(f) && top_of(glance_usage_[f]) >= 1.0) return true;
   return false;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 namespace steplap {
@@ -69,6 +70,7 @@ void SparseLu::analyze() {
   for (auto* v : {&position_, &pivot_, &stack_, &resume_, &found_}) v->assign(n_, 0);
   mark_.assign(n_, -1);
   stamp_ = 0;
+  queue_.reserve(n_);
   work_.assign(n_, 0.0);
   inverse_pivot_.assign(n_, 0.0);
   is_known_ = true;
@@ -123,7 +125,7 @@ int SparseLu::reach(int column) {
 }
 
 bool SparseLu::factor_anew() {
-  has_pivots_ = false;
+  has_pivots_ = has_transposed_ = false;
   std::fill(position_.begin(), position_.end(), -1);
   std::fill(work_.begin(), work_.end(), 0.0);
   for (auto* v : {&l_row_, &u_position_}) v->clear();
@@ -206,12 +208,92 @@ void SparseLu::solve(double* x) {
     work_[k] = value;
     for (int e = l_begin_[k]; e < l_begin_[k + 1]; ++e) x[l_row_[e]] -= l_[e] * value;
   }
+  finish_work(x);
+}
+
+void SparseLu::finish(const double* y, double* x) {
+  std::copy(y, y + n_, work_.begin());
+  finish_work(x);
+}
+
+// Computes x = B work_ and sets work_ to zero.
+void SparseLu::finish_work(double* x) {
   for (int k = n_ - 1; k >= 0; --k) {
     const double value = work_[k] * inverse_pivot_[k];
     for (int e = u_begin_[k]; e < u_begin_[k + 1]; ++e) work_[u_position_[e]] -= u_[e] * value;
     x[order_[k]] = value;
     work_[k] = 0.0;
   }
+}
+
+void SparseLu::start_at(int position, double value) {
+  work_[position] += value;
+  if (mark_[position] == stamp_) return;
+  mark_[position] = stamp_;
+  queue_.push_back(position);
+}
+
+// Eliminates the entries of work_ that are not zero in ascending order, and appends the results. Later steps depend only on earlier ones,
+// so each step is final when it is the least in the queue.
+template <class Column> void SparseLu::append_reached(const Column& column, SparseVectors& out) {
+  std::make_heap(queue_.begin(), queue_.end(), std::greater<>());
+  while (!queue_.empty()) {
+    std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
+    const int k = queue_.back();
+    queue_.pop_back();
+    const double value = work_[k];
+    work_[k] = 0.0;
+    out.add(k, column(k, value, [this](int position, double change) {
+              const std::size_t size = queue_.size();
+              start_at(position, change);
+              if (queue_.size() > size) std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
+            }));
+  }
+  out.end_vector();
+}
+
+void SparseLu::append_forward(const int* rows, const double* values, int count, SparseVectors& out) {
+  ++stamp_;
+  for (int i = 0; i < count; ++i) start_at(position_[rows[i]], values[i]);
+  append_reached(
+      [this](int k, double value, const auto& put) {
+        for (int e = l_begin_[k]; e < l_begin_[k + 1]; ++e) put(position_[l_row_[e]], -l_[e] * value);
+        return value;
+      },
+      out);
+}
+
+void SparseLu::append_backward(const int* columns, const double* values, int count, SparseVectors& out) {
+  if (!has_transposed_) transpose_upper();
+  ++stamp_;
+  for (int i = 0; i < count; ++i) start_at(step_of_column_[columns[i]], values[i]);
+  append_reached(
+      [this](int k, double value, const auto& put) {
+        value *= inverse_pivot_[k];
+        for (int e = row_begin_[k]; e < row_begin_[k + 1]; ++e) put(row_step_[e], -u_[row_place_[e]] * value);
+        return value;
+      },
+      out);
+}
+
+void SparseLu::transpose_upper() {
+  step_of_column_.resize(n_);
+  for (int k = 0; k < n_; ++k) step_of_column_[order_[k]] = k;
+  row_begin_.assign(n_ + 1, 0);
+  for (const int position : u_position_) ++row_begin_[position + 1];
+  std::partial_sum(row_begin_.begin(), row_begin_.end(), row_begin_.begin());
+  row_next_.assign(row_begin_.begin(), row_begin_.end());
+  row_step_.reserve(u_.capacity());
+  row_place_.reserve(u_.capacity());
+  row_step_.resize(u_.size());
+  row_place_.resize(u_.size());
+  for (int k = 0; k < n_; ++k)
+    for (int e = u_begin_[k]; e < u_begin_[k + 1]; ++e) {
+      const int at = row_next_[u_position_[e]]++;
+      row_step_[at] = k;
+      row_place_[at] = e;
+    }
+  has_transposed_ = true;
 }
 
 } // namespace steplap

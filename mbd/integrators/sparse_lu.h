@@ -15,6 +15,24 @@
 
 namespace steplap {
 
+/// Sparse vectors one after the other, each with ascending places.
+struct SparseVectors {
+  std::vector<std::size_t> begin{0}; ///< one more than there are vectors
+  std::vector<int> place;
+  std::vector<double> value;
+
+  void clear() {
+    begin.resize(1);
+    place.clear();
+    value.clear();
+  }
+  void add(int at, double x) {
+    place.push_back(at);
+    value.push_back(x);
+  }
+  void end_vector() { begin.push_back(place.size()); }
+};
+
 /// A sparse matrix A and its LU factors.
 class SparseLu {
 public:
@@ -34,7 +52,20 @@ public:
   /// In place: x = A⁻¹ x. Precondition: factor() returned true.
   void solve(double* x);
 
+  // A solution in two halves, A⁻¹ = B F, of which sparse vectors keep most zeros. Precondition as for solve().
+  /// Appends F b for the b with `count` entries at `rows`.
+  void append_forward(const int* rows, const double* values, int count, SparseVectors& out);
+  /// Appends Bᵀ c for the c with `count` entries at `columns`, so that (Bᵀ c)·(F b) = c·A⁻¹b.
+  void append_backward(const int* columns, const double* values, int count, SparseVectors& out);
+  /// Computes x = B y; y has an entry for each row of A.
+  void finish(const double* y, double* x);
+
 private:
+  void finish_work(double* x);
+  void start_at(int position, double value);
+  template <class Column> void append_reached(const Column& column, SparseVectors& out);
+  void transpose_upper();
+
   void add_unknown(std::size_t k, int row, int column, double value);
   void analyze();
   [[nodiscard]] bool refactor();
@@ -64,6 +95,10 @@ private:
   std::vector<double> work_; ///< per row, zero between calls
   std::vector<int> stack_, resume_, found_, mark_;
   int stamp_ = 0;
+  bool has_transposed_ = false;
+  std::vector<int> step_of_column_;                              ///< inverse of order_
+  std::vector<int> row_begin_, row_step_, row_place_, row_next_; ///< rows of U: elimination steps of the columns, and places in u_
+  std::vector<int> queue_;                                       ///< heap of elimination steps
 };
 
 } // namespace steplap

@@ -204,15 +204,56 @@ void StageSystem::solve_unknowns() {
   sparse_.solve(solution_.data());
 }
 
-void StageSystem::solve_for_forces(const double* pull, double* u) {
+void StageSystem::append_force(const ForceRow& row, SparseVectors& out) {
   const std::vector<double>& w = linearization_->inverse_mass();
-  for (int i = 0; i < n_; ++i) right_[i] = g_ * pull[i];
-  right_.tail(m_).setZero();
-  solve_unknowns();
+  double pull[6];
+  for (int i = 0; i < row.count; ++i) pull[i] = g_ * w[row.coordinate[i]] * row.gradient[i];
+  if (!is_dense_) return sparse_.append_forward(row.coordinate, pull, row.count, out);
+  right_.setZero();
+  for (int i = 0; i < row.count; ++i) right_[row.coordinate[i]] += pull[i];
+  dense_.solve(right_, solution_);
+  for (int k = 0; k < n_; ++k) out.add(k, solution_[k]);
+  out.end_vector();
+}
+
+void StageSystem::append_rate(const ForceRow& row, SparseVectors& out) {
+  if (!is_dense_) return sparse_.append_backward(row.coordinate, row.gradient, row.count, out);
+  for (int i = 0; i < row.count; ++i) out.add(row.coordinate[i], row.gradient[i]);
+  out.end_vector();
+}
+
+void StageSystem::finish_forces(const double* sum, double* u) {
+  const std::vector<double>& w = linearization_->inverse_mass();
+  if (is_dense_) std::copy(sum, sum + n_, solution_.data());
+  else sparse_.finish(sum, solution_.data());
   for (int i = 0; i < n_; ++i) {
     u[n_ + i] = w[i] > 0.0 ? solution_[i] : 0.0;
     u[i] = g_ * u[n_ + i];
   }
+}
+
+// Rows that are not held keep their places, so that the pattern does not change.
+bool StageSystem::factor_held(const std::vector<ForceRow>& rows, const std::vector<char>& is_held, const std::vector<double>& softness) {
+  const std::vector<double>& w = linearization_->inverse_mass();
+  const int first = n_ + m_;
+  held_.begin(first + static_cast<int>(rows.size()));
+  assemble(g_, [this](int i, int j, double value) { held_.add(i, j, value); });
+  for (int r = 0; r < static_cast<int>(rows.size()); ++r) {
+    const ForceRow& row = rows[r];
+    for (int i = 0; i < row.count; ++i) {
+      held_.add(row.coordinate[i], first + r, -g_ * w[row.coordinate[i]] * row.gradient[i]);
+      held_.add(first + r, row.coordinate[i], is_held[r] != 0 ? row.gradient[i] : 0.0);
+    }
+    held_.add(first + r, first + r, softness[r]);
+  }
+  return held_.factor();
+}
+
+void StageSystem::solve_held(std::vector<double>& rates) {
+  held_right_.setZero(n_ + m_ + static_cast<Eigen::Index>(rates.size()));
+  std::copy(rates.begin(), rates.end(), held_right_.data() + n_ + m_);
+  held_.solve(held_right_.data());
+  std::copy(held_right_.data() + n_ + m_, held_right_.data() + held_right_.size(), rates.begin());
 }
 
 } // namespace steplap

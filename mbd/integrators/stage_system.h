@@ -18,6 +18,9 @@
 //
 //   r = (0, W f), the lower right side 0:   J u_v − g G_v u_v − g² G_q u_v = 0.
 //
+// The rate along row i by a force along row j, h_i S⁻¹ g W h_jᵀ, is the product of a half of each (sparse_lu.h). Small systems, which are
+// solved densely, have the whole solution in the half of the force.
+//
 // Small systems are solved densely, large ones by sparse factors (sparse_lu.h) whose pattern is kept. After the first solution of a given
 // size nothing is allocated.
 #pragma once
@@ -30,6 +33,13 @@
 
 namespace steplap {
 
+/// A row along which an additional force acts: its gradient g in at most six coordinates, none of them locked.
+struct ForceRow {
+  int count = 0;
+  int coordinate[6] = {};
+  double gradient[6] = {};
+};
+
 /// Assembles, factorises and solves the system for one linearisation.
 class StageSystem {
 public:
@@ -39,8 +49,22 @@ public:
   [[nodiscard]] bool factor(double g);
   /// Solves u = (1/g − ∂F/∂y)⁻¹ r; both consist of q, v (n each) and inner states.
   void solve(const double* r, double* u);
-  /// Solves for additional forces: `pull` contains the n velocity parts W f; rows and locks react.
-  void solve_for_forces(const double* pull, double* u);
+
+  // The velocities that a unit force along a row causes are a product of two halves, so that sparse ones need not be multiplied out.
+  /// Appends the half F of a force along the row; constraint rows and locks react.
+  void append_force(const ForceRow& row, SparseVectors& out);
+  /// Appends the half Bᵀ of the rate along a row: its product with append_force() of another is the rate by a unit force along that.
+  void append_rate(const ForceRow& row, SparseVectors& out);
+  /// Number of places of these vectors.
+  [[nodiscard]] int places() const { return n_ + m_; }
+  /// Computes the change u of q and v (n each) from a sum of vectors of append_force().
+  void finish_forces(const double* sum, double* u);
+
+  /// Factorises for forces along the rows held at a given rate, H u + e w = r; the others have none. `softness`: e of each row, positive.
+  /// Returns false if the matrix is singular.
+  [[nodiscard]] bool factor_held(const std::vector<ForceRow>& rows, const std::vector<char>& is_held, const std::vector<double>& softness);
+  /// Solves for the forces w, in place of the rates r of the rows.
+  void solve_held(std::vector<double>& rates);
 
 private:
   template <class Put> void assemble(double g, const Put& put) const;
@@ -58,6 +82,8 @@ private:
   MatX matrix_;
   DenseLu dense_;
   SparseLu sparse_;
+  SparseLu held_; ///< of factor_held()
+  VecX held_right_;
   VecX right_, solution_, moved_;
   struct Inner {
     Mat3 answer;                         ///< A

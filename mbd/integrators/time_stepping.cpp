@@ -56,7 +56,7 @@ void refuse_beyond_laws(const System& system, Dynamics& dynamics, const State& s
 
 TimeStepping::TimeStepping(const System& system) : system_(system) {
   const auto n = static_cast<std::size_t>(system.largest_dimension());
-  for (auto* v : {&y0_, &y1_, &dy_, &right_, &free_, &probe_}) v->assign(n, 0.0);
+  for (auto* v : {&y0_, &y1_, &dy_, &right_, &free_, &probe_, &response_}) v->assign(n, 0.0);
 }
 
 bool TimeStepping::is_rounding(double t0, double t1) const {
@@ -135,9 +135,11 @@ void TimeStepping::move(Dynamics& dynamics, double t1, double tolerance) {
   const int numbers = 2 * n_ + dynamics.inner_count(); // own states follow the motion without friction
   std::copy(y0_.begin(), y0_.begin() + numbers + 2, y1_.begin());
   for (int i = 0; i < numbers; ++i) y1_[i] += free_[i];
-  for (int r = 0; r < rows_; ++r)
-    if (const double* const response = &response_[static_cast<std::size_t>(r) * 2 * n_]; wrench_[r] != 0.0)
-      for (int i = 0; i < 2 * n_; ++i) y1_[i] += response[i] * wrench_[r];
+  if (std::any_of(wrench_.begin(), wrench_.end(), [](double w) { return w != 0.0; })) {
+    compliance_.apply(wrench_);
+    compliance_.response(response_.data());
+    for (int i = 0; i < 2 * n_; ++i) y1_[i] += response_[i];
+  }
   const Residual found = dynamics.project(time_of_loads(t1), y1_.data(), tolerance);
   residual_.position = std::max(residual_.position, found.position);
   residual_.velocity = std::max(residual_.velocity, found.velocity);

@@ -28,8 +28,9 @@
 // end do not show peaks. Such steps are halved, too (inner_slips.cpp).
 #pragma once
 
-#include "mbd/integrators/stage_system.h"
+#include "mbd/integrators/row_compliance.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -69,13 +70,11 @@ private:
     Mat3 mobility = Mat3::Zero();               ///< if driven: its own block of the mobility, zero in these directions
     Mat3 free = Mat3::Identity();               ///< projection onto the other directions
     double noise = 0.0;                         ///< velocity in these directions that counts as rest
+    double own[9] = {};                         ///< compliance of its own rows, dimension × dimension
     double bound = 0.0, kinetic_share = 1.0;    ///< dimension 1: bound at the wrench bound_at_; ratio of the kinetic to the static bound
     BlockSolution block;
-  };
-  /// Gradient of a friction row in the coordinates of the clusters on both sides.
-  struct FrictionGradient {
-    int cluster[2] = {-1, -1};
-    double g[2][3] = {};
+
+    [[nodiscard]] double compliance(int i) const { return own[i * (dimension + 1)]; } ///< along its own row i
   };
   /// Reason why a step is impossible.
   struct Trouble {
@@ -114,7 +113,7 @@ private:
   // time_stepping_friction.cpp
   void collect_friction(Dynamics& dynamics, State& state);
   [[nodiscard]] bool has_held(const FrictionState& friction, int f) const;
-  void load_row(Dynamics& dynamics, const RowSpec& spec, FrictionGradient& row) const;
+  void load_row(Dynamics& dynamics, const RowSpec& spec, ForceRow& row) const;
   void respond(Dynamics& dynamics, double h);
   void find_driven(FrictionPart& part, double h);
   void free_rates(Dynamics& dynamics, double tolerance);
@@ -129,11 +128,17 @@ private:
   [[nodiscard]] double size_of(const FrictionPart& part, const double* wrench) const;
   [[nodiscard]] double largest_size(const Evaluation& e) const;
   void hold_together();
+  /// Marks the rows of the elements that can hold and that `holds` selects.
+  template <class Holds> void hold(const Holds& holds) {
+    for (const FrictionPart& part : parts_)
+      std::fill_n(is_held_.begin() + part.first, part.dimension, !part.is_driven && holds(part) ? 1 : 0);
+  }
   [[nodiscard]] bool hold_rows();
   [[nodiscard]] bool factor_held(double proximal);
   [[nodiscard]] double solve_held(int steps);
   void stretch(const Evaluation& e);
   [[nodiscard]] bool bears(const Evaluation& e, double share) const;
+  [[nodiscard]] double effect_of_others(const FrictionPart& part) const;
   void stop_at_rest(double change);
   // time_stepping_modes.cpp
   [[nodiscard]] bool slid_before(int f) const;
@@ -158,18 +163,18 @@ private:
   std::vector<FrictionPart> parts_;
   int n_ = 0, rows_ = 0;
   std::vector<double> y0_, y1_, dy_, right_, free_, probe_;
-  std::vector<FrictionGradient> gradient_; ///< gradient of each friction row
-  std::vector<double> response_;           ///< rows × 2n: change of the state by a unit force
-  std::vector<double> compliance_;         ///< rows × rows: change of a row's rate by a unit force along another
-  std::vector<double> rate_;               ///< per row: rate at the end without friction
+  std::vector<ForceRow> force_rows_; ///< of the friction rows
+  RowCompliance compliance_;
+  std::vector<double> response_; ///< 2n: change of the state by forces along the rows
+  std::vector<double> rate_;     ///< per row: rate at the end without friction
   std::vector<double> wrench_, before_,
-      last_;                                ///< per row: now, before the last repetition, before the last sweep
-  bool is_coupled_ = false;                 ///< bounds are functions of the wrenches
-  std::vector<double> bound_at_, bound_by_; ///< per row: wrench at the linearisation; rows × rows: ∂bound/∂wrench
-  std::vector<int> held_;                   ///< rows of factor_held() and solve_held()
-  std::vector<char> tried_;                 ///< for each set of modes tried, per part: kinetic or not
-  std::vector<double> overload_;            ///< per part: fraction of its static set that it would need to stick
-  std::vector<double> matrix_, together_, rest_;
+      last_;                                                    ///< per row: now, before the last repetition, before the last sweep
+  bool is_coupled_ = false;                                     ///< bounds are functions of the wrenches
+  std::vector<double> bound_at_, bound_by_;                     ///< per row: wrench at the linearisation; rows × rows: ∂bound/∂wrench
+  std::vector<char> is_held_;                                   ///< per row: solved together with others by hold_rows()
+  std::vector<char> tried_;                                     ///< for each set of modes tried, per part: kinetic or not
+  std::vector<double> overload_;                                ///< per part: fraction of its static set that it would need to stick
+  std::vector<double> together_, rest_, softness_;              ///< per row
   std::vector<Sticking> sticking_, sticking_now_;               ///< per friction element: of the previous part, of the present one
   std::vector<std::array<double, k_glances>> glance_usage_;     ///< per friction element
   double held_time_ = std::numeric_limits<double>::quiet_NaN(); ///< s; NaN: time is not held

@@ -1,6 +1,7 @@
 // Friction in a time step: rows, their responses, and the wrenches within the admissible sets.
 #include "mbd/base/portable_math.h"
 #include "mbd/integrators/time_stepping.h"
+#include "mbd/system/bounded_friction.h"
 #include "mbd/system/row_gradient.h"
 
 #include <Eigen/Eigenvalues>
@@ -36,13 +37,15 @@ constexpr int k_proximal_steps = 4;
 // Velocity that counts as rest, relative to the contribution of other elements: their wrenches are accurate to k_settled, or to this
 // multiple of the last change. An element on the boundary of its set without a velocity sticks, since many distributions of a load lead
 // there.
+constexpr double k_unsymmetric = 10.0; // allowance for springs and dampers that make the compliance unsymmetric
 constexpr double k_rest_of_others = 1e-7, k_changes_at_rest = 10.0;
 // Change of a wrench for computing the derivatives of bounds, relative to the element's capacity. If it is too large, it is reduced by the
 // factor k_shorter, up to k_probes times.
 constexpr double k_probe = 1e-2, k_shorter = 1e-2;
 constexpr int k_probes = 6;
-constexpr int k_sets_expected = 8; // capacity reserved for the sets of modes tried in a step
-constexpr double k_held = 1e-6;    // relative residual of the velocities below which sticking together is possible
+constexpr int k_sets_expected = 8;   // capacity reserved for the sets of modes tried in a step
+constexpr double k_rounding = 1e-14; // relative residual that further proximal iterations do not reduce
+constexpr double k_held = 1e-6;      // relative residual of the velocities below which sticking together is possible
 
 } // namespace
 
@@ -76,62 +79,59 @@ void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
     rows_ += part.dimension;
   }
   wrench_.assign(rows_, 0.0);
-  gradient_.resize(rows_);
+  force_rows_.resize(rows_);
 }
 
-// Computes the gradient of a friction row in the coordinates of the clusters.
-void TimeStepping::load_row(Dynamics& dynamics, const RowSpec& spec, FrictionGradient& row) const {
+// Computes the gradient of a friction row in the free coordinates of the clusters.
+void TimeStepping::load_row(Dynamics& dynamics, const RowSpec& spec, ForceRow& row) const {
   const Layout& layout = dynamics.layout();
   const std::vector<Motion<double>>& motion = dynamics.motion();
+  const std::vector<double>& w = linearization_.inverse_mass();
   const auto m = evaluate_row<false>(spec, motion.data());
-  row = {};
   const int body[2] = {spec.a, spec.b};
-  for (int side = 0; side < 2; ++side) {
-    const Placement& place = layout.placements[body[side]];
-    row.cluster[side] = place.cluster;
-    if (place.cluster < 0) continue;
-    const Motion<double>& k = motion[layout.clusters[place.cluster].motion];
+  row.count = 0;
+  const bool is_swapped = layout.placements[spec.b].cluster < layout.placements[spec.a].cluster;
+  for (const int side : {is_swapped ? 1 : 0, is_swapped ? 0 : 1}) { // in the order of coordinates
+    const int cluster = layout.placements[body[side]].cluster;
+    if (cluster < 0) continue;
+    const Motion<double>& k = motion[layout.clusters[cluster].motion];
     const Pair<double> off{motion[body[side]].x - k.x, motion[body[side]].y - k.y};
-    put_gradient(m, side, (side == 0 ? m.lever_a : m.lever_b) + off, row.g[side]);
+    double g[3];
+    put_gradient(m, side, (side == 0 ? m.lever_a : m.lever_b) + off, g);
+    for (int c = 0; c < 3; ++c) {
+      const int coordinate = 3 * cluster + c;
+      if (!(w[coordinate] > 0.0)) continue;
+      int* const end = row.coordinate + row.count;
+      const auto at = std::find(row.coordinate, end, coordinate) - row.coordinate; // both bodies may belong to one cluster
+      if (at == row.count) row.gradient[at] = 0.0;
+      row.count = std::max(row.count, static_cast<int>(at) + 1);
+      row.coordinate[at] = coordinate;
+      row.gradient[at] += g[c];
+    }
   }
-  if (row.cluster[0] < 0 || row.cluster[0] != row.cluster[1]) return;
-  for (int c = 0; c < 3; ++c) row.g[0][c] += row.g[1][c]; // both bodies belong to one cluster
-  row.cluster[1] = -1;
 }
 
-// Computes the responses to unit forces along the friction rows, including the reactions of joints and drives.
+// Computes the compliance along the friction rows, including the reactions of joints and drives.
 void TimeStepping::respond(Dynamics& dynamics, double h) {
-  const std::vector<double>& w = linearization_.inverse_mass();
-  const auto n2 = static_cast<std::size_t>(2 * n_), rows = static_cast<std::size_t>(rows_);
   for (const FrictionPart& part : parts_) {
     const RowSpec* specs = system_.frictions[part.friction].friction->rows(dynamics.evaluation().friction[part.friction]);
-    for (int i = 0; i < part.dimension; ++i) load_row(dynamics, specs[i], gradient_[part.first + i]);
+    for (int i = 0; i < part.dimension; ++i) load_row(dynamics, specs[i], force_rows_[part.first + i]);
   }
-  matrix_.reserve(rows * rows); // for hold_together(), which may be needed for the first time late in a run
-  for (auto* v : {&together_, &rest_}) v->reserve(rows);
-  held_.reserve(rows);
+  const bool is_larger = static_cast<int>(is_held_.size()) < rows_;
+  for (auto* v : {&together_, &rest_, &softness_}) v->assign(rows_, 0.0);
+  is_held_.resize(rows_);
   overload_.reserve(parts_.size());
   tried_.reserve(k_sets_expected * parts_.size());
-  response_.resize(rows * n2);
-  compliance_.assign(rows * rows, 0.0);
-  rate_.assign(rows, 0.0);
-  for (std::size_t r = 0; r < rows; ++r) {
-    std::fill(right_.begin(), right_.begin() + n_, 0.0);
-    const FrictionGradient& row = gradient_[r];
-    for (int side = 0; side < 2; ++side)
-      for (int c = 0; c < 3 && row.cluster[side] >= 0; ++c) {
-        const int k = 3 * row.cluster[side] + c;
-        right_[k] += w[k] * row.g[side][c];
-      }
-    stages_.solve_for_forces(right_.data(), &response_[r * n2]);
+  rate_.assign(rows_, 0.0);
+  compliance_.set(stages_, force_rows_);
+  for (FrictionPart& part : parts_) {
+    for (int i = 0; i < part.dimension; ++i)
+      for (int j = 0; j < part.dimension; ++j) part.own[i * part.dimension + j] = compliance_.between(part.first + i, part.first + j);
+    find_driven(part, h);
   }
-  for (std::size_t i = 0; i < rows; ++i)
-    for (int side = 0; side < 2; ++side)
-      for (int c = 0; c < 3 && gradient_[i].cluster[side] >= 0; ++c) {
-        const std::size_t k = n_ + 3 * gradient_[i].cluster[side] + c;
-        for (std::size_t j = 0; j < rows; ++j) compliance_[i * rows + j] += gradient_[i].g[side][c] * response_[j * n2 + k];
-      }
-  for (FrictionPart& part : parts_) find_driven(part, h);
+  if (!is_larger) return; // else allocates the memory of hold_rows(), which may be needed for the first time late in a run
+  hold([](const FrictionPart&) { return true; });
+  (void)factor_held(k_proximal);
 }
 
 // Finds the directions in which joints and drives leave no mobility, so that no wrench changes the velocity.
@@ -140,15 +140,13 @@ void TimeStepping::find_driven(FrictionPart& part, double h) {
   Mat3 scaled = Mat3::Identity();
   Vec3 scale = Vec3::Ones(); // mobility of the two bodies without joints
   for (int i = 0; i < part.dimension; ++i) {
-    const FrictionGradient& row = gradient_[part.first + i];
+    const ForceRow& row = force_rows_[part.first + i];
     double own = 0.0;
-    for (int side = 0; side < 2; ++side)
-      for (int c = 0; c < 3 && row.cluster[side] >= 0; ++c) own += h * w[3 * row.cluster[side] + c] * row.g[side][c] * row.g[side][c];
+    for (int c = 0; c < row.count; ++c) own += h * w[row.coordinate[c]] * row.gradient[c] * row.gradient[c];
     scale[i] = own > 0.0 ? std::sqrt(own) : 1.0;
   }
   for (int i = 0; i < part.dimension; ++i)
-    for (int j = 0; j < part.dimension; ++j)
-      scaled(i, j) = compliance_[static_cast<std::size_t>(part.first + i) * rows_ + part.first + j] / (scale[i] * scale[j]);
+    for (int j = 0; j < part.dimension; ++j) scaled(i, j) = part.own[i * part.dimension + j] / (scale[i] * scale[j]);
   if (part.dimension == 1) {
     part.is_driven = !(scaled(0, 0) > k_driven);
     return;
@@ -171,13 +169,13 @@ void TimeStepping::find_driven(FrictionPart& part, double h) {
 // Computes the rates of the rows without friction: those at the projected end of the step minus the responses to the wrenches.
 void TimeStepping::free_rates(Dynamics& dynamics, double tolerance) {
   const Motion<double>* const motion = dynamics.motion().data();
+  compliance_.apply(wrench_);
   for (FrictionPart& part : parts_) {
     const RowSpec* specs = system_.frictions[part.friction].friction->rows(dynamics.evaluation().friction[part.friction]);
     double speed = 0.0;
     for (int i = 0; i < part.dimension; ++i) {
       const std::size_t r = part.first + i;
-      rate_[r] = evaluate_row<false>(specs[i], motion).rate;
-      for (int j = 0; j < rows_; ++j) rate_[r] -= compliance_[r * rows_ + j] * wrench_[j];
+      rate_[r] = evaluate_row<false>(specs[i], motion).rate - compliance_.rate(static_cast<int>(r));
       for (const int body : {specs[i].a, specs[i].b})
         if (body != k_ground) speed = std::max({speed, portable::hypot(motion[body].vx, motion[body].vy), std::abs(motion[body].omega)});
     }
@@ -190,8 +188,7 @@ double TimeStepping::bound_of(const Evaluation& e, const FrictionPart& part, boo
   const FrictionElement& element = *system_.frictions[part.friction].friction;
   const FrictionState& friction = e.friction[part.friction];
   if (!element.is_loaded(e, friction)) return 0.0;
-  const double a[9] = {}, b[3] = {-1.0}; // the wrench is insufficient in any case, so it equals the bound
-  return element.solve_block(e, friction, a, b, is_kinetic).wrench[0];
+  return system_.frictions[part.friction].bounded->bounds(e, friction, is_kinetic).high;
 }
 
 // Linearises bounds as functions of the wrenches at their present values. Normal forces end at zero, where they no longer depend on
@@ -223,10 +220,13 @@ void TimeStepping::couple_bounds(Dynamics& dynamics, double t1, double tolerance
 // Computes the derivatives of all bounds by a wrench of element `by`, as a difference small enough that no bound becomes zero.
 void TimeStepping::find_slope(Dynamics& dynamics, double t1, const FrictionPart& by) {
   double size = k_probe * by.bound;
+  rest_.assign(rows_, 0.0);
+  rest_[by.first] = 1.0;
+  compliance_.apply(rest_);
+  compliance_.response(response_.data());
   for (int attempt = 0; attempt < k_probes; ++attempt, size *= k_shorter) {
     std::copy(y1_.begin(), y1_.end(), probe_.begin());
-    const double* const response = &response_[static_cast<std::size_t>(by.first) * 2 * n_];
-    for (int i = 0; i < 2 * n_; ++i) probe_[i] += size * response[i];
+    for (int i = 0; i < 2 * n_; ++i) probe_[i] += size * response_[i];
     evaluate(dynamics, t1, probe_.data());
     bool is_short = true;
     for (const FrictionPart& part : parts_) {
@@ -269,19 +269,16 @@ BlockSolution TimeStepping::solve_coupled(const FrictionPart& part, double a, do
   return block;
 }
 
-// Solves one element for the present wrenches of the others.
+// Solves one element for the present wrenches of the others, which act in compliance_.
 BlockSolution TimeStepping::solve_part(const Evaluation& e, const FrictionPart& part) const {
   const FrictionElement& element = *system_.frictions[part.friction].friction;
   const FrictionState& friction = e.friction[part.friction];
   const int d = part.dimension;
-  double a[9] = {}, b[3] = {};
+  double a[9], b[3] = {};
+  std::copy(part.own, part.own + 9, a);
   for (int i = 0; i < d; ++i) {
-    const std::size_t row = part.first + i;
-    const double* const c = &compliance_[row * rows_];
-    b[i] = rate_[row];
-    for (int j = 0; j < rows_; ++j)
-      if (j < part.first || j >= part.first + d) b[i] += c[j] * wrench_[j];
-    for (int j = 0; j < d; ++j) a[i * d + j] = c[part.first + j];
+    b[i] = rate_[part.first + i] + compliance_.rate(part.first + i);
+    for (int j = 0; j < d; ++j) b[i] -= a[i * d + j] * wrench_[part.first + j];
   }
   if (part.is_driven && d == 1) {
     if (std::abs(b[0]) <= part.noise) return {}; // the wrench is undetermined, as the drive carries it: zero
@@ -301,8 +298,7 @@ BlockSolution TimeStepping::solve_part(const Evaluation& e, const FrictionPart& 
 double TimeStepping::size_of(const FrictionPart& part, const double* wrench) const {
   double size = 0.0;
   for (int i = 0; i < part.dimension; ++i) {
-    const std::size_t r = part.first + i;
-    size = std::max(size, std::abs(wrench[r]) * std::sqrt(std::max(0.0, compliance_[r * rows_ + r])));
+    size = std::max(size, std::abs(wrench[part.first + i]) * std::sqrt(std::max(0.0, part.compliance(i))));
   }
   return size;
 }
@@ -314,8 +310,7 @@ double TimeStepping::largest_size(const Evaluation& e) const {
   for (const FrictionPart& part : parts_) {
     size = std::max(size, size_of(part, wrench_.data()));
     if (part.dimension != 1) continue;
-    const double bound = bound_of(e, part, false), c = compliance_[static_cast<std::size_t>(part.first) * rows_ + part.first];
-    size = std::max(size, bound * std::sqrt(std::max(0.0, c)));
+    size = std::max(size, bound_of(e, part, false) * std::sqrt(std::max(0.0, part.compliance(0))));
   }
   return size;
 }
@@ -324,8 +319,7 @@ double TimeStepping::largest_size(const Evaluation& e) const {
 double TimeStepping::change_of(const FrictionPart& part, const double* before, double size) const {
   double change = 0.0;
   for (int i = 0; i < part.dimension; ++i) {
-    const std::size_t r = part.first + i;
-    const double c = std::abs(wrench_[r] - before[i]) * std::sqrt(std::max(0.0, compliance_[r * rows_ + r]));
+    const double c = std::abs(wrench_[part.first + i] - before[i]) * std::sqrt(std::max(0.0, part.compliance(i)));
     if (!(c <= change)) change = c;
   }
   const double own = std::max(size_of(part, wrench_.data()), k_small_share * size);
@@ -336,6 +330,7 @@ double TimeStepping::change_of(const FrictionPart& part, const double* before, d
 double TimeStepping::sweep(Dynamics& dynamics, int& worst) {
   const Evaluation& e = dynamics.evaluation();
   last_ = wrench_;
+  compliance_.apply(wrench_);
   double largest = 0.0, size = largest_size(e);
   for (FrictionPart& part : parts_) {
     BlockSolution block;
@@ -346,6 +341,7 @@ double TimeStepping::sweep(Dynamics& dynamics, int& worst) {
     double before[3] = {0, 0, 0};
     std::copy(wrench, wrench + part.dimension, before);
     std::copy(block.wrench, block.wrench + part.dimension, wrench);
+    for (int i = 0; i < part.dimension; ++i) compliance_.add(part.first + i, wrench[i] - before[i]);
     part.block = block;
     size = std::max(size, size_of(part, wrench_.data()));
     const double change = change_of(part, before, size);
@@ -360,61 +356,52 @@ double TimeStepping::sweep(Dynamics& dynamics, int& worst) {
 // Solves for the wrenches of all sticking elements together, with those of slipping ones fixed. If the set of sticking elements is right,
 // the next sweep changes nothing. If no wrenches can stop all of them, nothing is changed.
 void TimeStepping::hold_together() {
-  held_.clear();
-  for (const FrictionPart& part : parts_)
-    for (int i = 0; part.block.sticks && !part.is_driven && i < part.dimension; ++i) held_.push_back(part.first + i);
-  if (held_.empty() || !hold_rows()) return;
-  for (std::size_t i = 0; i < held_.size(); ++i) wrench_[held_[i]] = together_[i];
+  hold([](const FrictionPart& part) { return part.block.sticks; });
+  if (hold_rows()) wrench_ = together_;
 }
 
-// Computes the wrenches together_ that stop the rows held_, the least ones if there are many. Returns false if there are none.
+// Computes the wrenches together_ that stop the rows held, the least ones if there are many; other rows keep theirs. Returns false if there
+// are none.
 bool TimeStepping::hold_rows() { return factor_held(k_proximal) && solve_held(k_proximal_steps) <= k_held; }
 
-// Computes L Lᵀ of the symmetric part of the compliance of the rows held_, with its diagonal increased by the fraction `proximal`. Returns
-// false if it is not positive definite.
+// Factorises for the rows held, with their compliance increased by the fraction `proximal`. Returns false if no row is held, or if the
+// matrix is singular.
 bool TimeStepping::factor_held(double proximal) {
-  const std::size_t n = held_.size();
-  const auto c = [&](std::size_t i, std::size_t j) { return compliance_[static_cast<std::size_t>(held_[i]) * rows_ + held_[j]]; };
-  matrix_.resize(n * n);
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      double sum = i == j ? c(i, i) * (1.0 + proximal) : 0.5 * (c(i, j) + c(j, i));
-      for (std::size_t k = 0; k < j; ++k) sum -= matrix_[i * n + k] * matrix_[j * n + k];
-      if (i == j && !(sum > 0.0)) return false;
-      matrix_[i * n + j] = i == j ? std::sqrt(sum) : sum / matrix_[j * n + j];
+  together_ = wrench_;
+  if (std::find(is_held_.begin(), is_held_.end(), 1) == is_held_.end()) return false;
+  bool is_new = false; // the softness tells which rows are held; it is zero while there are no factors for this stage system
+  for (const FrictionPart& part : parts_)
+    for (int i = 0; i < part.dimension; ++i) {
+      const int r = part.first + i;
+      const double compliance = part.compliance(i) > 0.0 ? part.compliance(i) : 1.0;
+      const double softness = is_held_[r] != 0 ? proximal * compliance : compliance;
+      is_new = is_new || softness_[r] != softness;
+      softness_[r] = softness;
     }
-  }
-  return true;
+  if (!is_new || stages_.factor_held(force_rows_, is_held_, softness_)) return true;
+  softness_.assign(rows_, 0.0);
+  return false;
 }
 
-// Computes the wrenches together_ by the given number of proximal iterations with the factors of factor_held(); other wrenches are fixed.
-// Returns the remaining velocity of the rows relative to that without these wrenches.
+// Computes the wrenches together_ by the given number of proximal iterations with the factors of factor_held(). Returns the remaining
+// velocity of the rows relative to that without these wrenches.
 double TimeStepping::solve_held(int steps) {
-  const std::size_t n = held_.size();
-  together_.assign(n, 0.0);
-  rest_.resize(n);
   double wanted = 0.0, left = 0.0;
+  for (int r = 0; r < rows_; ++r)
+    if (is_held_[r] != 0) together_[r] = 0.0;
   for (int step = 0; step <= steps; ++step) {
     left = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double* const row = &compliance_[static_cast<std::size_t>(held_[i]) * rows_];
-      double sum = -rate_[held_[i]];
-      for (int j = 0; j < rows_; ++j) sum -= row[j] * wrench_[j];
-      for (std::size_t j = 0; j < n; ++j) sum -= row[held_[j]] * (together_[j] - wrench_[held_[j]]);
-      rest_[i] = sum;
-      left = std::max(left, std::abs(sum) / std::sqrt(row[held_[i]]));
-    }
+    compliance_.apply(together_);
+    for (const FrictionPart& part : parts_)
+      for (int i = 0; i < part.dimension; ++i) {
+        const int r = part.first + i;
+        rest_[r] = is_held_[r] != 0 ? -rate_[r] - compliance_.rate(r) : 0.0;
+        if (is_held_[r] != 0) left = std::max(left, std::abs(rest_[r]) / std::sqrt(part.compliance(i)));
+      }
     if (step == 0) wanted = left;
-    if (step == steps) break;
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t k = 0; k < i; ++k) rest_[i] -= matrix_[i * n + k] * rest_[k];
-      rest_[i] /= matrix_[i * n + i];
-    }
-    for (std::size_t i = n; i-- > 0;) {
-      for (std::size_t k = i + 1; k < n; ++k) rest_[i] -= matrix_[k * n + i] * rest_[k];
-      rest_[i] /= matrix_[i * n + i];
-      together_[i] += rest_[i];
-    }
+    if (step == steps || left <= k_rounding * wanted) break;
+    stages_.solve_held(rest_);
+    for (int r = 0; r < rows_; ++r) together_[r] += rest_[r];
   }
   return wanted > 0.0 ? left / wanted : 0.0;
 }
@@ -433,7 +420,7 @@ bool TimeStepping::bears(const Evaluation& e, double share) const {
     }
     if (!is_moved) continue;
     for (int i = 0; i < d; ++i) { // the nearest admissible wrench is w itself
-      a[i * d + i] = compliance_[static_cast<std::size_t>(part.first + i) * rows_ + part.first + i];
+      a[i * d + i] = part.compliance(i);
       b[i] = -a[i * d + i] * w[i];
     }
     if (!element.solve_block(e, e.friction[part.friction], a, b, part.is_kinetic).sticks) return false;
@@ -446,15 +433,16 @@ bool TimeStepping::bears(const Evaluation& e, double share) const {
 // slowly.
 void TimeStepping::stretch(const Evaluation& e) {
   double slope = 0.0, curvature = 0.0;
-  for (int i = 0; i < rows_; ++i) {
-    const double s = wrench_[i] - last_[i], *const c = &compliance_[static_cast<std::size_t>(i) * rows_];
-    if (s == 0.0) continue;
-    slope += s * rate_[i];
-    for (int j = 0; j < rows_; ++j) {
-      slope += s * c[j] * last_[j];
-      curvature += s * c[j] * (wrench_[j] - last_[j]);
+  const auto add_power = [&](const std::vector<double>& wrench, double sign) {
+    compliance_.apply(wrench);
+    for (int i = 0; i < rows_; ++i) {
+      const double change = wrench_[i] - last_[i], rate = compliance_.rate(i);
+      slope += sign < 0.0 ? change * (rate_[i] + rate) : 0.0;
+      curvature += sign * change * rate;
     }
-  }
+  };
+  add_power(last_, -1.0);
+  add_power(wrench_, 1.0);
   if (!(slope < 0.0)) return;
   const double best = slope < -k_longest_stretch * curvature ? k_longest_stretch : -slope / curvature;
   double share = 1.0, beyond = 2.0;
@@ -467,24 +455,36 @@ void TimeStepping::stretch(const Evaluation& e) {
   for (int i = 0; i < rows_; ++i) wrench_[i] = last_[i] + share * (wrench_[i] - last_[i]);
 }
 
+// Returns the sum of the sizes of what the wrenches of all other elements add to the rate of an element.
+double TimeStepping::effect_of_others(const FrictionPart& part) const {
+  double effect = 0.0;
+  for (int i = 0; i < part.dimension; ++i) {
+    double sum = 0.0;
+    for (int j = 0; j < rows_; ++j)
+      if ((j < part.first || j >= part.first + part.dimension) && wrench_[j] != 0.0)
+        sum += std::abs(compliance_.between(part.first + i, j) * wrench_[j]);
+    effect = std::max(effect, sum / std::sqrt(part.compliance(i)));
+  }
+  return effect;
+}
+
 // Makes elements stick that are on the boundary of their set with a velocity no larger than the remaining changes of the others.
 void TimeStepping::stop_at_rest(double change) {
   const double share = std::max(k_rest_of_others, k_changes_at_rest * change);
+  compliance_.apply(wrench_);
+  // |C_ij| ≤ √(C_ii C_jj) if C is symmetric, so that this limits the effect of others on any element. C is nearly so.
+  double most = 0.0;
+  for (const FrictionPart& part : parts_)
+    for (int i = 0; i < part.dimension; ++i) most += std::abs(wrench_[part.first + i]) * std::sqrt(std::max(0.0, part.compliance(i)));
+  most *= k_unsymmetric;
   for (FrictionPart& part : parts_) {
     if (part.block.sticks || part.is_driven) continue;
-    double velocity = 0.0, others = 0.0;
+    double velocity = 0.0;
     for (int i = 0; i < part.dimension; ++i) {
-      const std::size_t r = part.first + i;
-      const double* const c = &compliance_[r * rows_];
-      double sum = rate_[r], size = 0.0;
-      for (int j = 0; j < rows_; ++j) {
-        sum += c[j] * wrench_[j];
-        if (j < part.first || j >= part.first + part.dimension) size += std::abs(c[j] * wrench_[j]);
-      }
-      velocity = std::max(velocity, std::abs(sum) / std::sqrt(c[r]));
-      others = std::max(others, size / std::sqrt(c[r]));
+      const int r = part.first + i;
+      velocity = std::max(velocity, std::abs(rate_[r] + compliance_.rate(r)) / std::sqrt(part.compliance(i)));
     }
-    part.block.sticks = velocity <= share * others;
+    part.block.sticks = velocity <= share * most && velocity <= share * effect_of_others(part);
   }
 }
 

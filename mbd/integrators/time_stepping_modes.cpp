@@ -15,6 +15,7 @@
 // Each element gets its static coefficient back at most once in a step, and no set of coefficients is tried twice: once one would be,
 // elements only change to kinetic. The number of rounds is therefore at most about twice the number of elements.
 #include "mbd/integrators/time_stepping.h"
+#include "mbd/system/bounded_friction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,6 +33,12 @@ constexpr double k_changes_in_tie = 10.0;
 constexpr double k_soft = 1e-6;
 // A row is at rest if its velocity is below this fraction of the terms that add up to it. Velocities are accurate to 1e-6 at worst.
 constexpr double k_rest_by_others = 1e-6;
+
+// Returns true if the static and the kinetic bounds of a one-dimensional element are the same.
+bool has_one_set(const BoundedFriction& element, const Evaluation& e, const FrictionState& friction) {
+  const WrenchBounds at_rest = element.bounds(e, friction, false), sliding = element.bounds(e, friction, true);
+  return at_rest.low == sliding.low && at_rest.high == sliding.high;
+}
 
 } // namespace
 
@@ -97,10 +104,14 @@ void TimeStepping::return_stopped(const Evaluation& e) {
   }
 }
 
-// Returns false if nothing slides with its static coefficient.
+// Returns false if nothing slides with a static coefficient that differs from its kinetic one.
 bool TimeStepping::give_kinetic(const Evaluation& e, double change) {
   const auto slides = [](const FrictionPart& part) { return part.is_loaded && !part.is_kinetic && !part.block.sticks; };
-  if (std::none_of(parts_.begin(), parts_.end(), slides)) return false;
+  const auto would_change = [&](const FrictionPart& part) {
+    const BoundedFriction* const bounded = system_.frictions[part.friction].bounded;
+    return slides(part) && !(bounded && has_one_set(*bounded, e, e.friction[part.friction]));
+  };
+  if (std::none_of(parts_.begin(), parts_.end(), would_change)) return false;
   find_overloads(e);
   double most = -1.0;
   std::size_t top = 0;
@@ -127,12 +138,8 @@ bool TimeStepping::give_kinetic(const Evaluation& e, double change) {
 // Computes the overloads. They are infinite if drives determine the motion or the capacity is zero: such an element slides.
 void TimeStepping::find_overloads(const Evaluation& e) {
   overload_.assign(parts_.size(), 0.0);
-  held_.clear();
-  for (const FrictionPart& part : parts_)
-    for (int i = 0; part.is_loaded && !part.is_kinetic && !part.is_driven && i < part.dimension; ++i) held_.push_back(part.first + i);
-  together_.assign(held_.size(), 0.0);
-  if (!held_.empty() && !hold_rows() && factor_held(k_soft)) (void)solve_held(1);
-  std::size_t row = 0;
+  hold([](const FrictionPart& part) { return part.is_loaded && !part.is_kinetic; });
+  if (!hold_rows() && factor_held(k_soft)) (void)solve_held(1);
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     const FrictionPart& part = parts_[p];
     if (!part.is_loaded || part.is_kinetic) continue;
@@ -141,29 +148,23 @@ void TimeStepping::find_overloads(const Evaluation& e) {
       continue;
     }
     double normal[3];
-    const double share = system_.frictions[part.friction].friction->gauge(e, e.friction[part.friction], &together_[row], normal);
+    const double share = system_.frictions[part.friction].friction->gauge(e, e.friction[part.friction], &together_[part.first], normal);
     overload_[p] = std::isnan(share) ? std::numeric_limits<double>::infinity() : share;
-    row += part.dimension;
   }
 }
 
 // Returns true if the element is at rest when all others with static coefficients stick. It cannot slide alone then, and the distribution
 // of the load is not unique.
 bool TimeStepping::is_held_by_others(const FrictionPart& part) {
-  held_.clear();
-  for (const FrictionPart& other : parts_)
-    for (int i = 0; &other != &part && other.is_loaded && !other.is_kinetic && !other.is_driven && i < other.dimension; ++i)
-      held_.push_back(other.first + i);
-  if (part.is_driven || held_.empty() || !hold_rows()) return false;
+  hold([&](const FrictionPart& other) { return &other != &part && other.is_loaded && !other.is_kinetic; });
+  if (part.is_driven || !hold_rows()) return false;
   for (int i = 0; i < part.dimension; ++i) {
-    const double* const row = &compliance_[static_cast<std::size_t>(part.first + i) * rows_];
     double velocity = rate_[part.first + i], size = std::abs(velocity);
-    const auto add = [&](double part_of_it) {
-      velocity += part_of_it;
-      size += std::abs(part_of_it);
-    };
-    for (int j = 0; j < rows_; ++j) add(row[j] * wrench_[j]);
-    for (std::size_t j = 0; j < held_.size(); ++j) add(row[held_[j]] * (together_[j] - wrench_[held_[j]]));
+    for (int j = 0; j < rows_; ++j) {
+      const double by = compliance_.between(part.first + i, j) * together_[j];
+      velocity += by;
+      size += std::abs(by);
+    }
     if (std::abs(velocity) > k_rest_by_others * size) return false;
   }
   return true;

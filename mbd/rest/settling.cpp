@@ -22,7 +22,7 @@ constexpr double k_balanced = 1e-9; // share of the initial accelerations; the r
 constexpr double k_shortest = 1e-5; // share of the longest step; time stepping takes steps below a tenth of it for rounding
 constexpr double k_touch = 64.0;    // in roundings of the largest coordinate
 constexpr double k_on_rows = 1e-12; // m, rad
-// Limits of steps. A step costs a solution for all coordinates, and the square of the number of friction rows.
+// Limits of steps, and of their number times the square of the number of rows and coordinates.
 constexpr int k_most_steps = 4000, k_least_steps = 100;
 constexpr double k_most_work = 4e8;
 

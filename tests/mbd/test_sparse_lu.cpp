@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <limits>
 #include <random>
 #include <utility>
@@ -83,4 +84,36 @@ TEST_CASE("sparse factors choose other pivots where those of before vanish, and 
   CHECK(error(lu, 2, entries, {0.0, 0.0, 1.0, 2.0}) == -1.0);
   CHECK(error(lu, 2, entries, {1.0, 2.0, 3.0, std::numeric_limits<double>::quiet_NaN()}) == -1.0);
   CHECK(error(lu, 2, entries, {1.0, 2.0, 3.0, 4.0}) <= 1e-15);
+}
+
+TEST_CASE("the halves of a solution multiply to it") {
+  std::mt19937 random(11);
+  const int n = 60;
+  const std::vector<MatrixPosition> entries = random_pattern(n, random);
+  SparseLu lu;
+  for (int repeat = 0; repeat < 3; ++repeat) { // the second time with the pivots of the first
+    const std::vector<double> values = random_values(entries.size(), random);
+    REQUIRE(error(lu, n, entries, values) >= 0.0);
+    MatX a = MatX::Zero(n, n);
+    for (std::size_t k = 0; k < entries.size(); ++k) a(entries[k].row, entries[k].column) += values[k];
+    const Eigen::PartialPivLU<MatX> dense(a);
+    for (const int row : {0, 17, 59})
+      for (const int column : {3, 17, 58}) {
+        const int rows[2] = {row, (row + 5) % n}, columns[1] = {column};
+        const double b[2] = {2.0, -3.0}, c[1] = {1.5};
+        SparseVectors halves;
+        lu.append_forward(rows, b, 2, halves);
+        lu.append_backward(columns, c, 1, halves);
+        VecX right = VecX::Zero(n), forward = VecX::Zero(n), backward = VecX::Zero(n), found(n);
+        for (int i = 0; i < 2; ++i) right[rows[i]] += b[i];
+        for (std::size_t e = 0; e < halves.begin[1]; ++e) forward[halves.place[e]] = halves.value[e];
+        for (std::size_t e = halves.begin[1]; e < halves.begin[2]; ++e) backward[halves.place[e]] = halves.value[e];
+        CHECK(std::is_sorted(halves.place.begin(), halves.place.begin() + static_cast<std::ptrdiff_t>(halves.begin[1])));
+        const VecX expected = dense.solve(right);
+        lu.finish(forward.data(), found.data());
+        const double tolerance = 1e-12 * expected.cwiseAbs().maxCoeff() / dense.rcond(); // as above
+        CHECK((found - expected).cwiseAbs().maxCoeff() <= tolerance);
+        CHECK(std::abs(backward.dot(forward) - c[0] * expected[column]) <= tolerance);
+      }
+  }
 }

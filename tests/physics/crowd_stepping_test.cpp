@@ -1,0 +1,121 @@
+// Crowds of bodies by time stepping: what a step costs, counted, and friction that holds exactly.
+#include "mbd/integrators/time_stepping.h"
+#include "tests/physics/model_text.h"
+#include "tests/physics/scene.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+// Blocks of 10 kg on a deck on two legs, so stiff that the sag under the weight is over after a few steps. A load pushes each block; the share of
+// μ N = 29 N grows from block to block, up to `most`.
+std::string blocks_on_deck(int count, double most) {
+  const auto number = [](double x) { return std::to_string(x); };
+  std::string text = body("deck", "mass = 5e3; inertia = 1e6");
+  for (const double x : {-0.5 * count, 0.5 * count})
+    text += element("bushing", x < 0.0 ? "left leg" : "right leg",
+                    "a = { body = 'deck', point = [" + number(x) + ", 0.0] }; b = { body = 'ground', at = [" + number(x) +
+                        ", 0.0] }; stiffness = [1e12, 1e12]; damping = [1e7, 1e7]; rotational_stiffness = 1e12");
+  for (int i = 0; i < count; ++i) {
+    const std::string n = std::to_string(i);
+    const double x = i - 0.5 * count + 0.5;
+    text += body("block " + n, "mass = 10.0; inertia = 0.5; position = [" + number(x) + ", 0.2]");
+    for (const double along : {-0.2, 0.2})
+      text += element("unilateral_contact", (along < 0.0 ? "left foot " : "right foot ") + n,
+                      "a = { body = 'block " + n + "', point = [" + number(along) + ", -0.2] }; b = { body = 'deck', point = [" +
+                          number(x + along) + ", 0.0] }; stiffness = 1e7; damping = 1e3; preload = 49.03325");
+    text += element("coulomb_stick", "friction " + n, "contacts = ['left foot " + n + "', 'right foot " + n + "']; static_friction = 0.3") +
+            signal_entry("trapezoid", "push " + n,
+                         "peak = " + number(29.4 * most * (i + 1) / count) + "; rise = 0.02; fall = 0.0; duration = 1.0") +
+            element("load", "push " + n, "at = 'block " + n + "'; force_x = 'push " + n + "'");
+  }
+  return text;
+}
+
+struct Crowd {
+  std::unique_ptr<const System> system;
+  std::unique_ptr<Dynamics> dynamics;
+  State state;
+
+  Crowd(int count, double most) : system(compile(scene(blocks_on_deck(count, most) + "\n[simulation]\nstep = 1e-3\n"))) {
+    dynamics = std::make_unique<Dynamics>(*system);
+    state = system->initial_state();
+  }
+  void step(int steps) {
+    TimeStepping stepping(*system);
+    for (int i = 1; i <= steps; ++i) stepping.step(*dynamics, state, 1e-3 * i, 1e-12);
+  }
+  // Returns the rate of a friction row at the state, m/s.
+  [[nodiscard]] double rate(int friction) {
+    dynamics->set_state(state);
+    std::vector<double> y(dynamics->dimension()), dy(dynamics->dimension());
+    dynamics->pack(state, y.data());
+    dynamics->rates(state.t, y.data(), dy.data());
+    const RowSpec* const rows = system->frictions[friction].friction->rows(state.friction[friction]);
+    return evaluate_row<false>(rows[0], dynamics->motion().data()).rate;
+  }
+  // Returns the number of entries of both vectors of unit forces along x on all bodies.
+  [[nodiscard]] double entries() {
+    dynamics->set_state(state);
+    std::vector<double> y(dynamics->dimension());
+    dynamics->pack(state, y.data());
+    Linearization linearization;
+    linearization.evaluate(*dynamics, state.t, y.data());
+    StageSystem stages;
+    stages.set(linearization, dynamics->layout());
+    REQUIRE(stages.factor(1e-3));
+    SparseVectors vectors;
+    for (int k = 0; k < dynamics->coordinate_count(); k += 3) {
+      const ForceRow row{1, {k}, {1.0}};
+      stages.append_force(row, vectors);
+      stages.append_rate(row, vectors);
+    }
+    return static_cast<double>(vectors.place.size());
+  }
+};
+
+} // namespace
+
+TEST_CASE("moreau: what a force on one body of a crowd reaches does not grow with the crowd") {
+  // Each block meets the deck only, so a row reaches these two, whatever the order of elimination: six of the unknowns.
+  // Twice the blocks have twice the entries; the deck's own make the difference from two.
+  const double twenty = Crowd(20, 0.9).entries(), forty = Crowd(40, 0.9).entries(), eighty = Crowd(80, 0.9).entries();
+  CHECK(forty <= 2.05 * twenty);
+  CHECK(eighty <= 2.05 * forty);
+}
+
+TEST_CASE("moreau: a step of a crowd takes as many evaluations whatever the number of bodies") {
+  const auto evaluations = [](int count) {
+    Crowd crowd(count, 0.9);
+    crowd.step(40);
+    return static_cast<double>(crowd.dynamics->evaluations());
+  };
+  // All blocks press and hold, and their passes are made together. A pass more where one of them ends near its tolerance is a third.
+  const double ten = evaluations(10);
+  for (const int count : {20, 40}) {
+    CAPTURE(count);
+    CHECK(evaluations(count) <= 1.34 * ten);
+  }
+}
+
+TEST_CASE("moreau: of a crowd that is pushed, those pushed beyond their bounds slide, and the others do not creep") {
+  // The pushes are between 1/40 and 40/40 of 1.2 μ N: those of blocks 34 to 40 are beyond μ N, that of 33 is 0.99 of it.
+  constexpr int k_blocks = 40;
+  Crowd crowd(k_blocks, 1.2);
+  crowd.step(40);
+  for (int i = 0; i < k_blocks; ++i) {
+    CAPTURE(i);
+    const bool slips = crowd.state.friction[i].phase == FrictionPhase::slip;
+    CHECK(slips == (i >= 33));
+    // Friction changes the velocity by 3e-3 m/s in a step, to 1e-8 of that (time_stepping.cpp); blocks that slide are faster than 1e-3 m/s.
+    if (!slips) CHECK(std::abs(crowd.rate(i)) <= 3e-11);
+  }
+}
