@@ -11,6 +11,8 @@ namespace steplap {
 
 namespace {
 
+constexpr std::chrono::milliseconds k_between{10}; // readings of the memory
+
 // Returns the resident memory of this process, bytes; 0 if it is unknown.
 double resident_memory() {
   std::ifstream file("/proc/self/statm");
@@ -22,7 +24,6 @@ double resident_memory() {
 
 StopQuestion within(const Budget& budget, StopQuestion otherwise) {
   using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds k_between{10};
   const Clock::time_point begin = Clock::now();
   return [budget, otherwise = std::move(otherwise), begin, next = begin]() mutable -> std::string {
     if (std::string why = otherwise ? otherwise() : std::string(); !why.empty()) return why;

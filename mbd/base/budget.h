@@ -7,7 +7,7 @@
 
 namespace steplap {
 
-/// What a computation may use.
+/// Limits of a computation.
 struct Budget {
   std::optional<double> time;   ///< wall time, s
   std::optional<double> memory; ///< resident memory of the whole process, bytes

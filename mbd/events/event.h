@@ -1,4 +1,4 @@
-// What the event list of a run contains.
+// Entries of the event list of a run.
 #pragma once
 
 #include "mbd/base/event_kind.h"

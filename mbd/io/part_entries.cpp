@@ -16,7 +16,7 @@ namespace {
 
 const char* const k_ground_name = "ground";
 
-// Of a marker or of a table about a body, such as a look.
+// Returns true if a marker, or a table about a body such as a look, names the ground.
 bool is_on_ground(const Node& entry) {
   const Node* const body = entry.find("body");
   return body && body->text() == k_ground_name;

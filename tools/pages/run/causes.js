@@ -43,7 +43,7 @@
       return { at: add([x, y], r), v: add([vx, vy], turned(w, r)), a, angle: [angle, w, alpha] };
     };
   }
-  // Of the driven point in the axes of the base: relative velocity and acceleration in a rotating frame.
+  // Motion of the driven point in the axes of the base: relative velocity and acceleration in a rotating frame.
   function relativeTo(base, point) {
     const [, w, alpha] = base.angle, r = minus(point.at, base.at), v = minus(minus(point.v, base.v), turned(w, r));
     const frame = add(turned(alpha, r), scaled(r, -w * w)), a = minus(minus(minus(point.a, base.a), frame), scaled(turned(w, v), 2));
@@ -52,7 +52,7 @@
   const rates = ['position', 'velocity', 'acceleration'];
   // Channels have single precision: a difference of two that is smaller than this part of them is rounding.
   const known = (value, ...of) => (Math.abs(value) < 1e-6 * Math.max(...of.map(Math.abs)) ? 0 : value);
-  // What a drive prescribes, as a function of time; null where the results do not have it.
+  // Returns the motion that a drive prescribes as a function of time; null if the results do not contain it.
   function driveOf(scene, element, shape) {
     const [driven, base] = shape.at, ends = base ? [motionOf(scene, driven), motionOf(scene, base)] : [null],
                    rate = rates.indexOf(element.as);
@@ -196,7 +196,7 @@
   }
 
   Object.assign(steplap.Scene.prototype, {
-    // What acts in this run: [{ element, shape, at(t), peak, from, to, times, values, text(size), sentence }], in the order of the model.
+    // Returns the loads of this run: [{ element, shape, at(t), peak, from, to, times, values, text(size), sentence }], in the order of the model.
     causes() {
       if (this.foundCauses) return this.foundCauses;
       const found = this.elements.flatMap((element) => element.shapes.map((shape) => this.loadOf(element, shape)).filter(Boolean));

@@ -8,7 +8,7 @@
   const corner = [22, 26]; // pixels from the picture's corner: where an arrow of gravity begins
 
   Object.assign(steplap.Symbols.prototype, {
-    // What acts without an element of its own: speeds at the start, gravity.
+    // Draws the loads that are no elements: speeds at the start and gravity.
     loadsWithoutElement() {
       for (const load of this.scene.causes())
         if (!load.shape || !this.scene.byName.has(load.element.name)) this.acting(load);
