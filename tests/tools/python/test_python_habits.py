@@ -215,7 +215,7 @@ def test_a_run_beyond_its_time_limit_is_open_and_has_what_was_found():
     assert run.verdict == "open" and "time limit of 0.5 s" in run.failure and 0.0 < run.t[-1] < 2000.0
     with pytest.raises(ValueError, match="time_limit"):
         model.run(time_limit=0.0)
-    with pytest.raises(steplap.SteplapError, match="memory limit of 1 MB"):
+    with pytest.raises(steplap.NumericalFailure, match="memory limit of 1 MB"):
         model.run(memory_limit=1e6)  # Python alone holds more
     with pytest.raises(ValueError, match="memory_limit"):
         model.run(memory_limit=0.0)
