@@ -44,7 +44,7 @@ void close_crossings(std::vector<Crossing>& crossings, double tolerance, const B
     std::vector<double> at;
     for (std::size_t i = 0; i < crossings.size(); ++i) {
       const Crossing& c = crossings[i];
-      if (c.is_bad || c.high - c.low <= tolerance || c.g_low == 0.0 || c.g_high == 0.0) continue;
+      if (c.is_bad || c.high - c.low <= tolerance) continue; // an end that is zero to rounding does not end the search
       double x = c.high - closing[i].high * (c.high - c.low) / (closing[i].high - closing[i].low);
       // The new point keeps a distance from both ends, so that both ends move.
       const double inside = 0.3 * tolerance;

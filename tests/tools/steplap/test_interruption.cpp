@@ -94,7 +94,7 @@ TEST_CASE("a time limit ends a run as a signal does, and keeps what was computed
 TEST_CASE("a memory limit ends a run as a time limit does") {
   const Workbench bench;
   const std::string model = bench.write("long.toml", k_oscillator);
-  const std::vector<std::string> run = {"simulate", model, "-o", bench.at("out"), "--set", "output.step=10"};
+  const std::vector<std::string> run = {"simulate", model, "-o", bench.at("out")};
   const auto limited_to = [&](const std::string& limit) {
     std::vector<std::string> arguments = run;
     arguments.insert(arguments.end(), {"--force", "--memory-limit", limit});

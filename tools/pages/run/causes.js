@@ -196,7 +196,8 @@
   }
 
   Object.assign(steplap.Scene.prototype, {
-    // Returns the loads of this run: [{ element, shape, at(t), peak, from, to, times, values, text(size), sentence }], in the order of the model.
+    // Returns the loads of this run in the order of the model: [{ element, shape, at(t), peak, from, to, times, values, text(size),
+    // sentence }].
     causes() {
       if (this.foundCauses) return this.foundCauses;
       const found = this.elements.flatMap((element) => element.shapes.map((shape) => this.loadOf(element, shape)).filter(Boolean));

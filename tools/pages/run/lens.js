@@ -13,7 +13,7 @@
   function decidedBy(run) {
     if (!steplap.overview) return null;
     const { utilisations, story } = steplap.overview.of(run), first = utilisations.find(steplap.overview.isJudged);
-    const told = story.filter((e) => e.what === 'slips' && e.who.length === 1 && e.amount && e.amount.unit === 'm')
+    const told = story.filter((e) => steplap.overview.isAbout(e, 'slips') && e.who.length === 1 && e.amount && e.amount.unit === 'm')
                    .sort((a, b) => Math.abs(b.amount.value) - Math.abs(a.amount.value));
     const isFirst = first && first.channel && first.channel.endsWith('.slide'),
           name = isFirst ? first.channel.slice(0, -6)

@@ -60,13 +60,15 @@ steplap.overview = (() => {
     const known = runs.map(of).filter((o) => o.worst_instant !== null && o.worst_instant !== undefined);
     return known.length ? known.reduce((a, b) => (shareOf(b) > shareOf(a) ? b : a)).worst_instant : null;
   }
+  // Entries of the story have verbs of their own (mbd/run/story.cpp), which are not the words of events.
+  const isAbout = (entry, verb) => entry.what === verb;
   // --- the instant that shows what the verdict or the story says ------------------------------------------
   const leaders = ['tips', 'comes apart', 'breaks', 'slips', 'lifts', 'opens']; // of a run without criteria, the gravest first
   const leastTurn = (3 * Math.PI) / 180; // of a body that is seen to tip
   // Returns the time of the largest force of a contact that closes; for other entries the time at which they begin.
   function pressedAt(run, entry) {
     const force = run.summary.extremes[`${entry.who[0]}.force`];
-    return entry.what === 'closes' && force ? force.t_max : entry.from;
+    return isAbout(entry, 'closes') && force ? force.t_max : entry.from;
   }
   // Returns the time at which a slide is largest or has ended.
   function endOf(run, entry) {
@@ -91,10 +93,10 @@ steplap.overview = (() => {
     const bodies = entry.what === 'tips' ? entry.who
       : entry.what === 'lifts'           ? entry.who.flatMap((name) => placesOf(name).slice(0, 1).map((p) => p.body))
                                          : [];
-    const strikes = entry.what === 'lifts' ? story.filter((e) => e.what === 'closes' && e.from > entry.from).map((e) => e.from) : [];
+    const strikes = entry.what === 'lifts' ? story.filter((e) => isAbout(e, 'closes') && e.from > entry.from).map((e) => e.from) : [];
     const { t, turn } = furthestTurn(run, bodies, Math.min(run.end, ...strikes)), gap = run.summary.extremes[`${entry.who[0]}.gap`];
     if (turn > leastTurn) return t;
-    return entry.what === 'slips' ? endOf(run, entry) : entry.what === 'lifts' && gap ? gap.t_max : pressedAt(run, entry);
+    return isAbout(entry, 'slips') ? endOf(run, entry) : entry.what === 'lifts' && gap ? gap.t_max : pressedAt(run, entry);
   }
   function largestShift(scene, t) {
     const pose = scene.look(t, scene.seenFrom, scene.magnification);
@@ -109,7 +111,7 @@ steplap.overview = (() => {
   function instantOf(scene) {
     const { run } = scene, { story, reason, worst_instant: worst, utilisations } = of(run);
     const hasCriteria = utilisations.some(isJudged),
-          slid = story.find((e) => e.what === 'slips' && e.who.length === 1 && reason.startsWith(`Joint '${e.who[0]}' slips`));
+          slid = story.find((e) => isAbout(e, 'slips') && e.who.length === 1 && reason.startsWith(`Joint '${e.who[0]}' slips`));
     if (slid) return endOf(run, slid);
     if (hasCriteria && worst !== null) return worst;
     const told = leaders.map((what) => story.find((e) => e.what === what)).find(Boolean) || story[0];
@@ -139,5 +141,5 @@ steplap.overview = (() => {
     const last = nice(1.08 * Math.max(...events, ...runs.map((run) => of(run).worst_instant ?? 0)));
     return last < 0.6 * end ? last : end;
   }
-  return { of, isJudged, badgeOf, worstOf, openingOf, nice, horizonOf };
+  return { of, isAbout, isJudged, badgeOf, worstOf, openingOf, nice, horizonOf };
 })();
