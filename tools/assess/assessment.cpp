@@ -88,7 +88,7 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
 
 // Evaluates shared frictions in an event after all models. Discards the traces, which would be large for a whole voyage.
 void pass_planes(SharedFrictions& shared, std::size_t e, Assessment& a) {
-  std::vector<const std::vector<FrictionTrace>*> traces;
+  std::vector<const std::vector<SampledFriction>*> traces;
   std::vector<const DriveHistory*> histories;
   for (std::size_t m = 0; m < a.models.size(); ++m) {
     traces.push_back(&a.events[e].passages[m].traces);

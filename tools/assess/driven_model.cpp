@@ -222,6 +222,12 @@ DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& even
   return history;
 }
 
+double trace_step(const DriveHistory& history) {
+  constexpr double k_most = 1e-3, k_least = 5e-4; // s; contacts of heavy machines vibrate below 100 Hz
+  if (history.step > k_most) return history.step / std::ceil(history.step / k_most);
+  return history.step * std::ceil(k_least / history.step);
+}
+
 std::string check_gravity(const RecordEvents& record, const DrivenModel& model) {
   constexpr double k_seen = 0.7, k_other = 0.5; // g: smallest reading that shows gravity along this axis; reading that shows it along
                                                 // another axis in spite of shocks in the first second

@@ -32,6 +32,10 @@ struct DriveHistory {
 /// Throws FileError if the record lacks an axis that the model needs.
 [[nodiscard]] DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& event, const Recorder& recorder, double angle);
 
+/// Returns the step at which frictions are sampled during an event, s. The sample times of the record are among its times, unless they are
+/// closer than 0.5 ms.
+[[nodiscard]] double trace_step(const DriveHistory& history);
+
 struct DrivenModel;
 /// Compares the direction of gravity in the record at rest with the recorder's orientation in the model. Throws FileError if axis or sign
 /// differ. Returns a sentence if the check was not possible, otherwise "".

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "elements/step_lap/step_lap_assessment.h"
+#include "elements/views/friction_plane.h"
 #include "mbd/run/overview.h"
 #include "tools/assess/driven_model.h"
-#include "tools/assess/friction_trace.h"
 
 #include <memory>
 #include <optional>
@@ -66,7 +66,7 @@ struct Passage {
   std::optional<double> worst_instant; ///< when a limit is nearest, s after the begin of the event
   std::vector<BodyPose> poses;         ///< of the written sample next to it; empty without one
   double still_moving = 0.0;           ///< largest speed of a body relative to the tank at the end, m/s
-  std::vector<FrictionTrace> traces;   ///< traces of the elements in DrivenModel::traced
+  std::vector<SampledFriction> traces; ///< traces of the elements in DrivenModel::traced
 };
 
 /// State of a model during the voyage.

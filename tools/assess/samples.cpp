@@ -36,9 +36,9 @@ void judge_planes(const Runners& runners, const std::vector<VoyageOutcome>& outc
   std::size_t events = outcomes.front().events_made;
   for (const VoyageOutcome& outcome : outcomes) events = std::min(events, outcome.events_made);
   SharedFrictions frictions(runners.shared);
-  const std::vector<FrictionTrace> none;
+  const std::vector<SampledFriction> none;
   for (std::size_t e = 0; e < events; ++e) {
-    std::vector<const std::vector<FrictionTrace>*> traces;
+    std::vector<const std::vector<SampledFriction>*> traces;
     std::vector<const DriveHistory*> histories;
     for (std::size_t m = 0; m < outcomes.size(); ++m) {
       traces.push_back(e < outcomes[m].traces.size() ? &outcomes[m].traces[e] : &none);

@@ -1,6 +1,5 @@
 #include "tools/assess/shared_friction.h"
 
-#include "elements/coulomb_friction.h"
 #include "elements/coulomb_stick.h"
 #include "elements/formula_force.h"
 #include "elements/load.h"
@@ -23,14 +22,6 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_one_line = 1e-6;      // tolerance for the directions of contacts whose friction is summed
-constexpr double k_same_load = 0.02;     // tolerance for normal forces of one contact in two independent models
-constexpr double k_same_gravity = 1e-6;  // tolerance for the magnitude of gravity
-constexpr double k_part_of_other = 0.05; // of mu N; a smaller transverse component reduces the capacity by less than 0.1 %, and one plane
-                                         // decides alone
-
-const std::string& key_of(const CoulombStick& stick) { return stick.shared_friction.empty() ? stick.name : stick.shared_friction; }
-
 // A model, completed and compiled.
 struct Compiled {
   Model whole;
@@ -39,16 +30,6 @@ struct Compiled {
     static_cast<void>(check_presentation(whole, *system)); // converts limits to the units of their channels
   }
 };
-
-Vec2 normal_of(const System& system, const std::string& element) {
-  for (const FrictionUnit& unit : system.frictions) {
-    const auto* const friction = dynamic_cast<const CoulombFriction*>(unit.friction.get());
-    if (!friction || system.element_names[unit.element] != element) continue;
-    const RowSpec& foot = friction->feet.front();
-    if (foot.kind == MeasureKind::slide) return rotated(foot.direction, system.bodies[foot.b].pose.z());
-  }
-  return Vec2::Zero(); // a wheel or a removed element
-}
 
 // Returns the letter of the record's axis along a direction of the model; ' ' if there is none.
 char letter_along(const DrivenModel& model, const Vec2& direction) {
@@ -137,32 +118,12 @@ std::vector<PlaneOfFriction::Limit> limits_of(const DrivenModel& model, const Co
   return limits;
 }
 
-using Sticks = std::map<std::string, std::vector<std::string>>; ///< names of elements by name of the friction
-
-Sticks sticks_of(const DrivenModel& model) {
-  Sticks sticks;
-  for (const ElementEntry& entry : model.given.elements)
-    if (const auto* const stick = dynamic_cast<const CoulombStick*>(entry.element.get())) sticks[key_of(*stick)].push_back(stick->name);
-  return sticks;
-}
-
 std::optional<PlaneOfFriction> plane_of(std::size_t index, const DrivenModel& model, const Compiled& compiled, const std::string& name,
                                         const std::vector<std::string>& elements) {
-  PlaneOfFriction plane;
-  plane.model = index;
+  const std::optional<FrictionPlane> found = friction_plane(*compiled.system, name, elements, compiled.system->gravity, model.file);
+  if (!found) return {};
+  PlaneOfFriction plane{*found, index, {}, {}, {}};
   plane.model_name = model.name;
-  const Vec2 normal = normal_of(*compiled.system, elements.front());
-  if (normal == Vec2::Zero()) return {};
-  for (const std::string& element : elements)
-    if ((normal_of(*compiled.system, element) - normal).norm() > k_one_line)
-      throw ModelError({model.file, 0, 0}, "'" + elements.front() + "' and '" + element + "' are one friction, '" + name +
-                                               "', for models of other planes, and act along different lines: give one of them a "
-                                               "its own 'shared_friction'");
-  plane.tangent = Vec2(normal.y(), -normal.x());
-  const Vec2& gravity = compiled.system->gravity;
-  plane.gravity = gravity.norm();
-  plane.downhill = gravity.dot(plane.tangent);
-  plane.tilt = plane.gravity > 0.0 ? -gravity.dot(normal) / plane.gravity : 1.0;
   plane.holders = holders_of(model, compiled, elements);
   plane.limits = limits_of(model, compiled, elements);
   return plane;
@@ -183,24 +144,24 @@ std::vector<std::size_t> trace(DrivenModel& model, const std::vector<std::string
 
 std::vector<SharedFriction> find_shared_frictions(std::vector<DrivenModel>& models) {
   std::vector<SharedFriction> found;
-  std::vector<Sticks> sticks;
+  std::vector<FrictionNames> frictions;
   std::vector<std::unique_ptr<Compiled>> compiled(models.size());
   for (DrivenModel& model : models) {
     model.traced.clear();
-    sticks.push_back(sticks_of(model));
+    frictions.push_back(friction_names(model.given));
   }
   const auto plane = [&](std::size_t m, const std::string& name) {
     if (!compiled[m]) compiled[m] = std::make_unique<Compiled>(models[m]);
-    return plane_of(m, models[m], *compiled[m], name, sticks[m].at(name));
+    return plane_of(m, models[m], *compiled[m], name, frictions[m].at(name));
   };
   for (std::size_t i = 0; i < models.size(); ++i)
     for (std::size_t k = i + 1; k < models.size(); ++k)
-      for (const auto& [name, elements] : sticks[i]) {
-        if (!sticks[k].contains(name)) continue;
+      for (const auto& [name, elements] : frictions[i]) {
+        if (!frictions[k].contains(name)) continue;
         std::optional<PlaneOfFriction> first = plane(i, name), second = plane(k, name);
         if (!first || !second || letter_along(models[i], first->tangent) == letter_along(models[k], second->tangent)) continue;
         first->traces = trace(models[i], elements);
-        second->traces = trace(models[k], sticks[k].at(name));
+        second->traces = trace(models[k], frictions[k].at(name));
         found.push_back({name, {std::move(*first), std::move(*second)}});
       }
   return found;
@@ -225,36 +186,19 @@ double at(const std::vector<double>& values, double place) {
 
 template <class T> T last_or(const std::vector<T>& values, std::size_t i) { return values[std::min(i, values.size() - 1)]; }
 
-// Returns the sum of the frictions of a plane.
-FrictionTrace sum_of(const PlaneOfFriction& plane, const std::vector<FrictionTrace>& traces) {
-  FrictionTrace sum = traces[plane.traces.front()];
-  for (std::size_t k = 1; k < plane.traces.size(); ++k) {
-    const FrictionTrace& more = traces[plane.traces[k]];
-    sum.lifts |= more.lifts;
-    sum.mu_static = std::min(sum.mu_static, more.mu_static);
-    sum.mu_kinetic = std::min(sum.mu_kinetic, more.mu_kinetic);
-    for (std::size_t i = 0; i < sum.force.size(); ++i) {
-      sum.force[i] += last_or(more.force, i);
-      sum.normal[i] += last_or(more.normal, i);
-      sum.sticks[i] = sum.sticks[i] != 0 && last_or(more.sticks, i) != 0 ? 1 : 0;
-    }
-  }
-  return sum;
-}
-
-double both_tilts(const std::array<PlaneOfFriction, 2>& planes) {
-  const double a = planes[0].tilt, b = planes[1].tilt;
-  return std::sqrt(std::max(0.0, a * a + b * b - 1.0));
+SampledFriction trace_of(const PlaneOfFriction& plane, const std::vector<SampledFriction>& traces) {
+  std::vector<SampledFriction> own;
+  for (const std::size_t i : plane.traces) own.push_back(traces[i]);
+  return sum_of_traces(own);
 }
 
 } // namespace
 
-std::vector<SharedFrictionCourse::Instant> SharedFrictionCourse::instants(const std::array<FrictionTrace, 2>& traces,
+std::vector<SharedFrictionCourse::Instant> SharedFrictionCourse::instants(const std::array<SampledFriction, 2>& traces,
                                                                           const std::array<const DriveHistory*, 2>& histories) const {
   std::vector<Instant> all(std::max(traces[0].force.size(), traces[1].force.size()));
-  const double tilt = both_tilts(friction_.planes);
   for (std::size_t k = 0; k < all.size(); ++k) {
-    all[k].normal = std::numeric_limits<double>::infinity();
+    all[k].normal = contact_->normal(traces, k);
     for (std::size_t p = 0; p < 2; ++p) {
       const PlaneOfFriction& plane = friction_.planes[p];
       const DriveHistory& history = *histories[p];
@@ -262,28 +206,12 @@ std::vector<SharedFrictionCourse::Instant> SharedFrictionCourse::instants(const 
       all[k].force[p] = last_or(traces[p].force, k);
       all[k].sticks[p] = last_or(traces[p].sticks, k) != 0;
       all[k].pull[p] = plane.tangent.x() * at(history.x, place) + plane.tangent.y() * at(history.y, place) - plane.downhill;
-      const double lost = plane.tilt > 0.0 ? (*at_rest_)[p] * (1.0 - tilt / plane.tilt) : 0.0;
-      all[k].normal = std::min(all[k].normal, std::max(0.0, last_or(traces[p].normal, k) - lost));
     }
   }
   return all;
 }
 
-std::string SharedFrictionCourse::disagreement_at_rest() const {
-  const PlaneOfFriction &a = friction_.planes[0], &b = friction_.planes[1];
-  if (std::abs(a.gravity - b.gravity) > k_same_gravity * std::max(a.gravity, b.gravity))
-    return "gravity is " + quantity_text(a.gravity, "m/s^2") + " in '" + a.model_name + "' and " + quantity_text(b.gravity, "m/s^2") +
-           " in '" + b.model_name + "', which share the friction '" + friction_.name +
-           "': tilt gravity in each plane by the slope of that plane, and leave its size";
-  const double first = (*at_rest_)[0] / a.tilt, second = (*at_rest_)[1] / b.tilt;
-  if (std::abs(first - second) > k_same_load * std::max(first, second))
-    return "the friction '" + friction_.name + "' carries " + quantity_text(first, "N") + " at rest in '" + a.model_name + "' and " +
-           quantity_text(second, "N") + " in '" + b.model_name +
-           "': make the models agree, or give two different frictions different names by 'shared_friction'";
-  return "";
-}
-
-void SharedFrictionCourse::slide(const std::vector<Instant>& instants, const std::array<FrictionTrace, 2>& traces, bool goes_on,
+void SharedFrictionCourse::slide(const std::vector<Instant>& instants, const std::array<SampledFriction, 2>& traces, bool goes_on,
                                  SharedPassage& passage) {
   // Fits T = m a over sticking intervals by least squares, including the sign of T for positive a.
   double mass_sum = 0.0, squares = 0.0;
@@ -300,7 +228,7 @@ void SharedFrictionCourse::slide(const std::vector<Instant>& instants, const std
     mass_sum += sign[p] * held;
   }
   const PlaneOfFriction& plane = friction_.planes[0];
-  double mass = plane.gravity > 0.0 ? (*at_rest_)[0] / (plane.tilt * plane.gravity) : std::numeric_limits<double>::infinity();
+  double mass = plane.gravity > 0.0 ? contact_->at_rest[0] / (plane.tilt * plane.gravity) : std::numeric_limits<double>::infinity();
   if (squares > 0.0 && mass_sum > 0.0) mass = std::min(mass, mass_sum / squares);
   if (!std::isfinite(mass) || !(mass > 0.0)) {
     passage.disagreement = "the weight of the load on '" + friction_.name + "' is unknown: it neither has weight nor is it pulled";
@@ -322,29 +250,20 @@ void SharedFrictionCourse::slide(const std::vector<Instant>& instants, const std
   velocity_ = goes_on ? point.velocity() : Vec2::Zero();
 }
 
-SharedPassage SharedFrictionCourse::pass(const std::array<FrictionTrace, 2>& traces, const std::array<const DriveHistory*, 2>& histories) {
+SharedPassage SharedFrictionCourse::pass(const std::array<SampledFriction, 2>& traces,
+                                         const std::array<const DriveHistory*, 2>& histories) {
   SharedPassage passage;
   passage.slid_total = slid_total_;
   if (traces[0].force.empty() || traces[1].force.empty()) return passage; // a failed run reports its reason itself
-  if (!at_rest_) at_rest_ = {traces[0].normal.front(), traces[1].normal.front()};
-  passage.disagreement = disagreement_at_rest();
+  if (!contact_)
+    contact_ = {friction_.name, {&friction_.planes[0], &friction_.planes[1]}, {traces[0].normal.front(), traces[1].normal.front()}};
+  passage.disagreement = contact_->disagreement();
   if (!passage.disagreement.empty()) return passage;
-  const std::vector<Instant> all = instants(traces, histories);
-  const double mu = std::min(traces[0].mu_static, traces[1].mu_static);
-  constexpr double k_unloaded = 1e-6, k_full = 1.0 - 1e-9; // of the load at rest; of mu N
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const Instant& now = all[k];
-    const double capacity = mu * now.normal;
-    if (!(now.normal > k_unloaded * (*at_rest_)[0]) || !(capacity > 0.0)) continue;
-    const double use = portable::hypot(now.force[0], now.force[1]) / capacity;
-    if (use > passage.use) passage.use = use, passage.at = static_cast<double>(k) * traces[0].step;
-    const bool is_alone = (!now.sticks[0] && now.force[0] != 0.0) || (!now.sticks[1] && now.force[1] != 0.0);
-    passage.slips |= (use >= k_full || is_alone) && std::min(std::abs(now.force[0]), std::abs(now.force[1])) >= k_part_of_other * capacity;
-  }
+  static_cast<SharedUse&>(passage) = shared_use(*contact_, traces);
   const bool goes_on = histories[0]->goes_on && histories[1]->goes_on;
   if (passage.slips || velocity_ != Vec2::Zero()) {
     passage.slips = true;
-    slide(all, traces, goes_on, passage);
+    slide(instants(traces, histories), traces, goes_on, passage);
     for (std::size_t p = 0; p < 2 && passage.bound.empty(); ++p)
       if (traces[p].lifts) passage.bound = "a contact under it lifts in '" + friction_.planes[p].model_name + "'";
       else if (!friction_.planes[p].holders.empty())
@@ -358,15 +277,15 @@ SharedFrictions::SharedFrictions(const std::vector<SharedFriction>& frictions) :
   for (const SharedFriction& friction : frictions) courses_.emplace_back(friction);
 }
 
-std::vector<SharedPassage> SharedFrictions::pass(const std::vector<const std::vector<FrictionTrace>*>& traces,
+std::vector<SharedPassage> SharedFrictions::pass(const std::vector<const std::vector<SampledFriction>*>& traces,
                                                  const std::vector<const DriveHistory*>& histories) {
   std::vector<SharedPassage> passages;
   for (std::size_t f = 0; f < frictions_.size(); ++f) {
-    std::array<FrictionTrace, 2> both;
+    std::array<SampledFriction, 2> both;
     std::array<const DriveHistory*, 2> driven{};
     for (std::size_t p = 0; p < 2; ++p) {
       const PlaneOfFriction& plane = frictions_[f].planes[p];
-      if (!traces[plane.model]->empty()) both[p] = sum_of(plane, *traces[plane.model]);
+      if (!traces[plane.model]->empty()) both[p] = trace_of(plane, *traces[plane.model]);
       driven[p] = histories[plane.model];
     }
     passages.push_back(courses_[f].pass(both, driven));

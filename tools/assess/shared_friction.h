@@ -1,14 +1,6 @@
 // Combines the friction of two models that show one machine in different planes and rest on the same friction contact.
 //
-// Friction is one vector. Each model compares its component with the whole capacity mu N, although both components together use √(T_1² +
-// T_2²). Elements (coulomb_stick) are shared if their names, or their `shared_friction`, are equal and the record's axes along them differ.
-// Several elements of one model with the same name are summed. At each instant of the record
-//
-//   use = sqrt(T_1² + T_2²) / (mu N),  N = min over i of N_i - N_i(0) (1 - c / c_i),  c² = c_1² + c_2² - 1
-//
-// with T_i and N_i from model i; c_i is the cosine of the tilt of plane i (angle between gravity and the normal of its contacts), c the
-// cosine of both tilts together. Every N_i contains the vertical axis of the record, which must count once only: therefore the minimum.
-// N_i(0) is the normal force at rest, the only part that a constant tilt reduces.
+// They share elements as elements/views/friction_plane.h says, which defines the use of the friction, if the record's axes along them differ.
 //
 // If both planes together slip, a point mass is integrated in the plane of the contact (sliding_point.h). Its driving force is the force
 // that the machine exerts on the contact: -T_i while plane i sticks, otherwise -m a_i from the record (including gravity along the slope).
@@ -17,7 +9,8 @@
 // a part lifts. Rotation about the vertical axis is not modelled.
 #pragma once
 
-#include "tools/assess/friction_trace.h"
+#include "elements/views/friction_plane.h"
+#include "tools/assess/driven_model.h"
 #include "tools/assess/voyage_summary.h"
 
 #include <array>
@@ -29,14 +22,9 @@
 namespace steplap::assess {
 
 /// A shared friction in one of the models.
-struct PlaneOfFriction {
+struct PlaneOfFriction : FrictionPlane {
   std::size_t model = 0;            ///< index
-  std::string model_name;           ///< for messages
   std::vector<std::size_t> traces;  ///< indices into DrivenModel::traced; the friction is their sum
-  Vec2 tangent = Vec2(1.0, 0.0);    ///< tangent of the contacts, ground axes
-  double gravity = 0.0;             ///< magnitude of gravity, m/s²
-  double downhill = 0.0;            ///< component of gravity along the tangent, m/s²
-  double tilt = 1.0;                ///< cosine of the angle between gravity and the normal of the contacts
   std::vector<std::string> holders; ///< other elements that hold the load
   struct Limit {
     std::string name;
@@ -57,11 +45,8 @@ struct SharedFriction {
 [[nodiscard]] std::vector<SharedFriction> find_shared_frictions(std::vector<DrivenModel>& models);
 
 /// Result of an event for a shared friction.
-struct SharedPassage {
+struct SharedPassage : SharedUse {
   std::size_t friction = 0; ///< index
-  double use = 0.0;         ///< largest share of mu N in use
-  double at = 0.0;          ///< its time, s
-  bool slips = false;       ///< true if both planes together slip, with a contribution of each
   double slid = 0.0;        ///< length of the point's path in this event, m; infinite if it does not come to rest
   double slid_total = 0.0;  ///< sum over all events so far, m
   std::string bound;        ///< if not empty: reason why the path is an upper bound
@@ -74,18 +59,17 @@ public:
   explicit SharedFrictionCourse(const SharedFriction& friction) : friction_(friction) {}
 
   /// Evaluates the next event. `traces` and `histories` belong to the two planes.
-  [[nodiscard]] SharedPassage pass(const std::array<FrictionTrace, 2>& traces, const std::array<const DriveHistory*, 2>& histories);
+  [[nodiscard]] SharedPassage pass(const std::array<SampledFriction, 2>& traces, const std::array<const DriveHistory*, 2>& histories);
 
 private:
   struct Instant;
-  [[nodiscard]] std::vector<Instant> instants(const std::array<FrictionTrace, 2>& traces,
+  [[nodiscard]] std::vector<Instant> instants(const std::array<SampledFriction, 2>& traces,
                                               const std::array<const DriveHistory*, 2>& histories) const;
-  [[nodiscard]] std::string disagreement_at_rest() const;
-  void slide(const std::vector<Instant>& instants, const std::array<FrictionTrace, 2>& traces, bool goes_on, SharedPassage& passage);
+  void slide(const std::vector<Instant>& instants, const std::array<SampledFriction, 2>& traces, bool goes_on, SharedPassage& passage);
 
   const SharedFriction& friction_;
-  std::optional<std::array<double, 2>> at_rest_; ///< normal forces at the begin of the voyage, N
-  Vec2 velocity_ = Vec2::Zero();                 ///< velocity at the end of the previous event, m/s
+  std::optional<SharedContact> contact_; ///< with the normal forces at the begin of the voyage
+  Vec2 velocity_ = Vec2::Zero();         ///< velocity at the end of the previous event, m/s
   double slid_total_ = 0.0;
 };
 
@@ -94,7 +78,7 @@ class SharedFrictions {
 public:
   explicit SharedFrictions(const std::vector<SharedFriction>& frictions);
   /// Evaluates the next event. `traces` and `histories` have one entry per model.
-  [[nodiscard]] std::vector<SharedPassage> pass(const std::vector<const std::vector<FrictionTrace>*>& traces,
+  [[nodiscard]] std::vector<SharedPassage> pass(const std::vector<const std::vector<SampledFriction>*>& traces,
                                                 const std::vector<const DriveHistory*>& histories);
 
 private:

@@ -3,9 +3,9 @@
 // estimates.
 #pragma once
 
+#include "elements/views/friction_plane.h"
 #include "mbd/system/instance.h"
 #include "tools/assess/driven_model.h"
-#include "tools/assess/friction_trace.h"
 #include "tools/assess/voyage_summary.h"
 
 #include <functional>
@@ -20,7 +20,7 @@ struct VoyageOutcome {
   VoyageSummary summary;
   std::vector<char> slips; ///< per event: true if a joint slipped
   std::size_t events_made = 0;
-  std::vector<std::vector<FrictionTrace>> traces; ///< per simulated event, of DrivenModel::traced
+  std::vector<std::vector<SampledFriction>> traces; ///< per simulated event, of DrivenModel::traced
 };
 
 /// Runs samples. Each thread needs its own object.

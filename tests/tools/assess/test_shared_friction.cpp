@@ -139,7 +139,7 @@ namespace {
 
 // Both planes tilted by the parts of a slope along them; the record is quiet.
 SharedPassage on_slope(double slope, double azimuth, double mu) {
-  std::array<FrictionTrace, 2> traces;
+  std::array<SampledFriction, 2> traces;
   SharedFriction friction;
   friction.name = "beams";
   std::array<DriveHistory, 2> histories;
@@ -261,12 +261,12 @@ TEST_CASE("which frictions are one: by name, by shared_friction, by sums; not tw
   CHECK(sum[0].planes[1].traces.size() == 2);
   CHECK(sum[0].planes[1].holders.empty());
   // Halves of it, one in each trace, are the whole.
-  FrictionTrace whole;
+  SampledFriction whole;
   whole.step = 1e-3, whole.mu_static = whole.mu_kinetic = 0.3;
   whole.force = {0.0, 2e4, 4e4}, whole.normal = {2e5, 2e5, 2e5}, whole.sticks = {1, 1, 1};
-  FrictionTrace half = whole;
+  SampledFriction half = whole;
   for (std::size_t i = 0; i < 3; ++i) half.force[i] *= 0.5, half.normal[i] *= 0.5;
-  const std::vector<FrictionTrace> one_of{whole}, two_of{half, half};
+  const std::vector<SampledFriction> one_of{whole}, two_of{half, half};
   DriveHistory quiet;
   quiet.step = 1e-3, quiet.x.assign(3, 0.0), quiet.y.assign(3, 0.0);
   SharedFrictions shared(sum);
