@@ -5,6 +5,7 @@
 #include "elements/polygon_contact.h"
 #include "mbd/base/event_kind.h"
 #include "mbd/base/portable_math.h"
+#include "mbd/model/entries.h"
 #include "mbd/run/quantity_text.h"
 
 #include <algorithm>
@@ -42,15 +43,12 @@ Vec2 normal_of(const System& system, const std::string& element, const Vec2& gra
 }
 
 bool has_opened(const Model& whole, const RunResult& result, const std::string& element) {
-  for (const ElementEntry& entry : whole.elements) {
-    if (entry.element->name != element) continue;
-    const auto* const stick = dynamic_cast<const CoulombStick*>(entry.element.get());
-    const std::vector<std::string> contacts = stick ? stick->contacts : std::vector<std::string>{element};
-    return std::any_of(result.events.begin(), result.events.end(), [&](const Event& event) {
-      return event.kind == EventKind::opens && std::find(contacts.begin(), contacts.end(), event.element) != contacts.end();
-    });
-  }
-  return false;
+  std::vector<std::string> contacts{element};
+  for (const CoulombStick* const stick : elements_of<CoulombStick>(whole))
+    if (stick->name == element) contacts = stick->contacts;
+  return std::any_of(result.events.begin(), result.events.end(), [&](const Event& event) {
+    return event.kind == EventKind::opens && std::find(contacts.begin(), contacts.end(), event.element) != contacts.end();
+  });
 }
 
 template <class T> T last_or(const std::vector<T>& values, std::size_t i) { return values[std::min(i, values.size() - 1)]; }
@@ -59,13 +57,10 @@ template <class T> T last_or(const std::vector<T>& values, std::size_t i) { retu
 
 FrictionNames friction_names(const Model& model) {
   FrictionNames names;
-  for (const ElementEntry& entry : model.elements) {
-    const std::string& own = entry.element->name;
-    if (const auto* const stick = dynamic_cast<const CoulombStick*>(entry.element.get()))
-      names[stick->shared_friction.empty() ? own : stick->shared_friction].push_back(own);
-    else if (const auto* const contact = dynamic_cast<const PolygonContact*>(entry.element.get()); contact && contact->static_friction)
-      names[own].push_back(own);
-  }
+  for (const CoulombStick* const stick : elements_of<CoulombStick>(model))
+    names[stick->shared_friction.empty() ? stick->name : stick->shared_friction].push_back(stick->name);
+  for (const PolygonContact* const contact : elements_of<PolygonContact>(model))
+    if (contact->static_friction) names[contact->name].push_back(contact->name);
   return names;
 }
 
@@ -160,7 +155,7 @@ std::string SharedContact::disagreement() const {
   if (std::abs(first - second) > k_same_load * std::max(first, second))
     return "the friction '" + name + "' carries " + quantity_text(first, "N") + " at rest in '" + a.model_name + "' and " +
            quantity_text(second, "N") + " in '" + b.model_name +
-           "': make the models agree, or tell two different frictions apart by 'shared_friction'";
+           "': make the models agree, or give two different frictions different names by 'shared_friction'";
   return "";
 }
 

@@ -2,6 +2,7 @@
 
 #include "elements/round_contacts.h"
 #include "mbd/base/number_text.h"
+#include "mbd/model/entries.h"
 #include "mbd/system/places.h"
 
 #include <array>
@@ -46,9 +47,7 @@ std::vector<Finding> doubled_corners(const LoadedModel& loaded) {
   std::map<std::pair<Track, Rounded>, std::vector<End>> ends;
   std::map<Track, Finding> found;
   std::vector<Track> order;
-  for (const ElementEntry& entry : loaded.model.elements) {
-    const auto* const contact = dynamic_cast<const SegmentContact*>(entry.element.get());
-    if (!contact) continue;
+  for (const SegmentContact* const contact : elements_of<SegmentContact>(loaded.model)) {
     const Place a = place_of(loaded.model, contact->a), b = place_of(loaded.model, contact->b);
     const Vec3 at = pose_of(*loaded.system, given, a.body), on = pose_of(*loaded.system, given, b.body);
     const Vec2 centre = rotated(Vec2(at.x() - on.x(), at.y() - on.y()) + rotated(a.point, at.z()), -on.z());

@@ -2,6 +2,7 @@
 
 #include "elements/coulomb_stick.h"
 #include "elements/unilateral_contact.h"
+#include "mbd/model/entries.h"
 #include "mbd/run/quantity_text.h"
 #include "mbd/system/places.h"
 
@@ -42,12 +43,9 @@ void add_foot(const LoadedModel& loaded, const State& given, const UnilateralCon
 std::vector<Finding> stepped_feet(const LoadedModel& loaded) {
   const State given = loaded.system->initial_state();
   std::unordered_map<std::string, const UnilateralContact*> contacts;
-  for (const ElementEntry& entry : loaded.model.elements)
-    if (const auto* contact = dynamic_cast<const UnilateralContact*>(entry.element.get())) contacts[contact->name] = contact;
+  for (const UnilateralContact* const contact : elements_of<UnilateralContact>(loaded.model)) contacts[contact->name] = contact;
   std::vector<Finding> found;
-  for (const ElementEntry& entry : loaded.model.elements) {
-    const auto* const stick = dynamic_cast<const CoulombStick*>(entry.element.get());
-    if (!stick) continue;
+  for (const CoulombStick* const stick : elements_of<CoulombStick>(loaded.model)) {
     Spread height, way;
     for (const std::string& name : stick->contacts)
       if (const auto contact = contacts.find(name); contact != contacts.end()) add_foot(loaded, given, *contact->second, height, way);

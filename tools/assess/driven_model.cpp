@@ -8,6 +8,7 @@
 #include "mbd/io/read_input.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/completion.h"
+#include "mbd/model/entries.h"
 #include "mbd/model/model_building.h"
 #include "tools/assess/assumed_limits.h"
 #include "transformer/core/core.h"
@@ -19,6 +20,7 @@
 #include <filesystem>
 #include <numbers>
 #include <set>
+#include <utility>
 
 namespace steplap::assess {
 
@@ -112,11 +114,8 @@ void add_across(Model& model, const Recorder& recorder, std::vector<std::string>
     return true;
   };
   bool is_any = false;
-  for (TableEntry& entry : model.tables)
-    if (auto* const core = dynamic_cast<Core*>(entry.table.get())) is_any |= is_taken(core->transverse_acceleration, core->name);
-  for (ElementEntry& entry : model.elements)
-    if (auto* const joint = dynamic_cast<StepLapJoint*>(entry.element.get()))
-      is_any |= is_taken(joint->transverse_acceleration, joint->name);
+  for (Core* const core : tables_of<Core>(model)) is_any |= is_taken(core->transverse_acceleration, core->name);
+  for (StepLapJoint* const joint : elements_of<StepLapJoint>(model)) is_any |= is_taken(joint->transverse_acceleration, joint->name);
   if (!is_any)
     throw ModelError(recorder.place("across"), "the recorder '" + recorder.name +
                                                    "' has an axis across that the model does not use: give the core a "
@@ -135,9 +134,8 @@ void refuse_other_drives(const Model& model, const Recorder& recorder, const std
       if (m.name == marker) return m.body;
     return marker;
   };
-  for (const ElementEntry& entry : model.elements) {
-    const auto* const motion = dynamic_cast<const PrescribedMotion*>(entry.element.get());
-    if (!motion || (body_of(motion->a) != body && body_of(motion->b) != body)) continue;
+  for (const PrescribedMotion* const motion : elements_of<PrescribedMotion>(model)) {
+    if (body_of(motion->a) != body && body_of(motion->b) != body) continue;
     throw ModelError(recorder.where, "'" + motion->name + "' drives '" + body + "', and so does the recorder '" + recorder.name +
                                          "': name it in 'replaces', as the record takes its place");
   }
@@ -151,15 +149,14 @@ bool looks_at(const std::string& channel, const std::set<std::string>& gone) {
 void take_out(Model& model, const Recorder& recorder, std::vector<std::string>& notes) {
   const std::set<std::string> gone(recorder.replaces.begin(), recorder.replaces.end());
   std::erase_if(model.elements, [&](const ElementEntry& e) { return gone.contains(e.element->name); });
-  for (const TableEntry& entry : model.tables)
-    if (const auto* const c = dynamic_cast<const Criterion*>(entry.table.get());
-        c && (looks_at(c->channel, gone) || gone.contains(c->element)))
-      notes.push_back("'" + c->name + "' is not asked: the record takes the place of what it looks at.");
-  std::erase_if(model.tables, [&](const TableEntry& entry) {
-    const auto* const c = dynamic_cast<const Criterion*>(entry.table.get());
-    return (c && (looks_at(c->channel, gone) || gone.contains(c->element))) ||
-           dynamic_cast<const Plot*>(entry.table.get()); // figures are not drawn
-  });
+  std::set<const Element*> unused;
+  for (const Plot* const plot : tables_of<Plot>(std::as_const(model))) unused.insert(plot); // figures are not drawn
+  for (const Criterion* const c : tables_of<Criterion>(std::as_const(model))) {
+    if (!looks_at(c->channel, gone) && !gone.contains(c->element)) continue;
+    notes.push_back("'" + c->name + "' is not asked: the record takes the place of what it looks at.");
+    unused.insert(c);
+  }
+  std::erase_if(model.tables, [&](const TableEntry& entry) { return unused.contains(entry.table.get()); });
   for (const std::string& name : recorder.replaces) notes.push_back("The record takes the place of '" + name + "'.");
 }
 

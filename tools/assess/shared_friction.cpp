@@ -8,6 +8,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/io/presentation.h"
 #include "mbd/model/completion.h"
+#include "mbd/model/entries.h"
 #include "mbd/run/quantity_text.h"
 #include "tools/assess/sliding_point.h"
 
@@ -70,9 +71,8 @@ std::vector<std::string> holders_of(const DrivenModel& model, const Compiled& co
   std::set<std::string> ends{"ground", model.body}, left_out(own.begin(), own.end()), pair;
   for (const Body& body : whole.bodies)
     if (body.fixed) ends.insert(body.name);
-  for (const ElementEntry& entry : whole.elements)
-    if (const auto* const stick = dynamic_cast<const CoulombStick*>(entry.element.get()); stick && left_out.contains(stick->name))
-      left_out.insert(stick->contacts.begin(), stick->contacts.end());
+  for (const CoulombStick* const stick : elements_of<CoulombStick>(whole))
+    if (left_out.contains(stick->name)) left_out.insert(stick->contacts.begin(), stick->contacts.end());
   std::vector<std::pair<std::string, std::set<std::string>>> edges;
   for (const ElementEntry& entry : whole.elements) {
     const std::set<std::string> bodies = bodies_of(entry, body_of_marker);

@@ -1,6 +1,7 @@
 #include "tools/assess/static_machine.h"
 
 #include "elements/step_lap/step_lap_joint.h"
+#include "mbd/model/entries.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/ramped_rest.h"
 #include "mbd/rest/start.h"
@@ -25,8 +26,8 @@ int channel_index(const System& system, const std::string& name) {
 }
 
 Model with_monitors(Model model) {
-  for (ElementEntry& entry : model.elements)
-    if (auto* const joint = dynamic_cast<StepLapJoint*>(entry.element.get()); joint && !is_elastic(*joint)) joint->mode = "monitor";
+  for (StepLapJoint* const joint : elements_of<StepLapJoint>(model))
+    if (!is_elastic(*joint)) joint->mode = "monitor";
   return model;
 }
 

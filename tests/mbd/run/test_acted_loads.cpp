@@ -193,10 +193,11 @@ TEST_CASE("a formula of the time that begins behind the end has not acted") {
   }
 }
 
-TEST_CASE("a load, a motor or a force that waits for an action which does not happen has not acted") {
-  const auto scene = [](const std::string& element, const std::string& step) {
-    return R"([simulation]
-end = 1.0
+namespace {
+
+// 100 kg on a rail with friction of 300 N; what `load` does is up to it.
+std::string box_on_rail(double end, double within, const std::string& load) {
+  return "[simulation]\nend = " + std::to_string(end) + R"(
 [[body]]
 name = "b"
 mass = 100.0
@@ -215,10 +216,15 @@ holds = 300.0
 [[acceptance]]
 name = "stays"
 channel = "b.x"
-within = 0.001
-[[element]]
-name = "l"
-)" + element +
+within = )" +
+         std::to_string(within) + "\n" + load;
+}
+
+} // namespace
+
+TEST_CASE("a load, a motor or a force that waits for an action which does not happen has not acted") {
+  const auto scene = [](const std::string& element, const std::string& step) {
+    return box_on_rail(1.0, 0.001, "[[element]]\nname = \"l\"\n" + element) +
            "\n[[action]]\nname = \"never\"\nwhen = \"b.x > '1 m'\"\ndo = [\"" + step + "\"]\n";
   };
   const std::string load = "kind = \"load\"\nat = \"b\"\n", motor = "kind = \"motor\"\na = \"b\"\ncoordinate = \"x\"\n",
@@ -246,30 +252,6 @@ name = "l"
 
 namespace {
 
-// 100 kg on a rail with friction of 300 N; what `load` does is up to it.
-std::string box_on_rail(double end, double within, const std::string& load) {
-  return "[simulation]\nend = " + std::to_string(end) + R"(
-[[body]]
-name = "b"
-mass = 100.0
-inertia = 10.0
-[[element]]
-kind = "prismatic"
-name = "rail"
-a = "b"
-axis = [1.0, 0.0]
-[[element]]
-kind = "joint_friction"
-name = "f"
-a = "b"
-coordinate = "x"
-holds = 300.0
-[[acceptance]]
-name = "stays"
-channel = "b.x"
-within = )" +
-         std::to_string(within) + "\n" + load;
-}
 std::string action(const std::string& step, const std::string& more = "") {
   return "[[action]]\nname = \"q\"\nwhen = \"5 ms\"\ndo = [\"" + step + "\"]\n" + more;
 }
