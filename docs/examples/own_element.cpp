@@ -59,7 +59,7 @@ const ElementKind& orifice_damper_kind() {
     k.holds<OrificeDamper>();
     k.compile = compile_damper;
     k.judge = judge_damper;
-    k.channels_of_trust = [](const Element& e) { return std::vector<TrustChannel>{{e.name + ".force"}}; };
+    k.channels_of_trust = [](const Element& e) { return std::vector<std::string>{e.name + ".force"}; };
     return k;
   }();
   return kind;

@@ -133,8 +133,6 @@ ElementJudgement judge_step_lap_joint(const Element& element, const Model& model
   return judgement;
 }
 
-std::vector<TrustChannel> trust_of_step_lap_joint(const Element& element) {
-  return {{element.name + ".margin", true}, {element.name + ".mode"}};
-}
+std::vector<std::string> trust_of_step_lap_joint(const Element& element) { return {element.name + ".margin", element.name + ".mode"}; }
 
 } // namespace steplap

@@ -11,6 +11,6 @@ namespace steplap {
 /// Implements ElementKind::judge for step_lap_joint.
 [[nodiscard]] ElementJudgement judge_step_lap_joint(const Element& element, const Model& model, const RunResult& result);
 /// Implements ElementKind::channels_of_trust for step_lap_joint.
-[[nodiscard]] std::vector<TrustChannel> trust_of_step_lap_joint(const Element& element);
+[[nodiscard]] std::vector<std::string> trust_of_step_lap_joint(const Element& element);
 
 } // namespace steplap

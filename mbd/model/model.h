@@ -82,12 +82,6 @@ struct GivenFriction {
   std::string source;       ///< as the model states it; empty: not stated
 };
 
-/// A channel whose extremes decide whether a result can be trusted.
-struct TrustChannel {
-  std::string name;       ///< of the channel
-  bool is_margin = false; ///< only values below 1 matter
-};
-
 /// One kind of element: its fields and its compilation into a system.
 struct ElementKind {
   std::string name;  ///< name in model files, such as "spring_damper"
@@ -116,7 +110,7 @@ struct ElementKind {
   /// True for ropes: where the element's gap opens it goes slack, and where it closes it becomes taut.
   bool goes_slack = false;
   /// Returns the channels whose extremes `judge` uses; their errors decide whether its result can be trusted.
-  std::vector<TrustChannel> (*channels_of_trust)(const Element& element) = nullptr;
+  std::vector<std::string> (*channels_of_trust)(const Element& element) = nullptr;
 
   /// Declares T as the struct of its elements.
   template <class T> void holds() {

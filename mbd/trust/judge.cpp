@@ -44,11 +44,11 @@ Judgement judge(const Model& model, const System& system, const RunResult& resul
   return judgement;
 }
 
-std::vector<TrustChannel> channels_of_trust(const Model& model) {
-  std::vector<TrustChannel> channels;
+std::vector<std::string> channels_of_trust(const Model& model) {
+  std::vector<std::string> channels;
   for (const ElementEntry& entry : model.elements) {
     if (!entry.kind->channels_of_trust) continue;
-    for (TrustChannel& channel : entry.kind->channels_of_trust(*entry.element)) channels.push_back(std::move(channel));
+    for (std::string& channel : entry.kind->channels_of_trust(*entry.element)) channels.push_back(std::move(channel));
   }
   return channels;
 }

@@ -13,6 +13,6 @@ namespace steplap {
 
 /// Returns the channels whose extremes decide whether a run can be trusted. A caller that omits channels must keep these;
 /// otherwise untrustworthy runs pass as trusted.
-[[nodiscard]] std::vector<TrustChannel> channels_of_trust(const Model& model);
+[[nodiscard]] std::vector<std::string> channels_of_trust(const Model& model);
 
 } // namespace steplap

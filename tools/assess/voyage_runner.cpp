@@ -29,7 +29,7 @@ std::vector<double> begins_of(const std::vector<DriveHistory>& histories, double
 // Returns the channels needed for joints, criteria and trust. Extremes of all other channels would take most of the time of a sample.
 std::vector<std::string> channels_wanted(const Model& whole, const System& system, const std::vector<std::string>& traced) {
   std::vector<std::string> wanted = traced_channels(traced);
-  for (const TrustChannel& channel : channels_of_trust(whole)) wanted.push_back(channel.name);
+  for (std::string& channel : channels_of_trust(whole)) wanted.push_back(std::move(channel));
   const auto is_wanted = [&](const std::string& name) {
     for (const ElementEntry& entry : whole.elements)
       if (entry.kind == &step_lap_joint_kind() && name.starts_with(entry.element->name + ".")) return true;

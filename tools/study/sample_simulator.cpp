@@ -184,10 +184,10 @@ void leave_out_others(Channel& channel, const RequestedExtremes& ends, const Run
   note(ends.high_races, [](RunningExtremes& race, double value) { return race.highest = std::max(race.highest, value), value; });
 }
 
-// Returns the extremes that decide whether a run can be trusted.
-RequestedExtremes ends_of_trust(const TrustChannel& channel) {
+// Returns the extremes of a channel that decide whether a run can be trusted. Of the margin of a joint only values below 1 matter.
+RequestedExtremes ends_of_trust(const Channel* channel) {
   RequestedExtremes ends;
-  if (channel.is_margin) ends.low_below = 1.0;
+  if (channel && channel->role == ChannelRole::margin) ends.low_below = 1.0;
   else ends.low = ends.high = true;
   return ends;
 }
@@ -251,9 +251,9 @@ struct SampleSimulator::SharedRunData {
         paths.push_back(path);
       }
     }
-    for (const TrustChannel& channel : channels_of_trust(completed(model.given))) {
-      channels.push_back(channel.name);
-      extremes[channel.name].add(ends_of_trust(channel));
+    for (const std::string& name : channels_of_trust(completed(model.given))) {
+      channels.push_back(name);
+      extremes[name].add(ends_of_trust(model.system->find_channel(name)));
     }
     numbers.resize(settings.size());
     variants = std::make_unique<Variants>(model.given, std::move(paths), wanted());
