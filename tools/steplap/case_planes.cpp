@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <optional>
 
 namespace steplap {
 
@@ -19,7 +21,7 @@ constexpr double k_samples = 200e3; // of a long run, at most
 struct CaseFriction {
   FrictionPlane plane;
   SampledFriction trace;
-  double error = 0.0; ///< sum of the estimated errors of friction and capacity, N; NaN: unknown
+  std::optional<double> error; ///< sum of the estimated errors of friction and capacity, N; NaN: unknown; empty: not estimated
 };
 
 /// One of the models.
@@ -83,14 +85,14 @@ void check_planes(const Planes& planes) {
 // Gravity at rest: what `pull` adds is a load.
 Vec2 gravity_of(const Model& model, const LoadCase& one) { return model.header.gravity - one.pull.value_or(Vec2::Zero()); }
 
-// Errors of friction and capacity of these elements at both ends of their ranges together, N; NaN if they are not estimated.
-double error_of(const Report& report, const std::vector<std::string>& elements) {
+// Errors of friction and capacity of these elements at both ends of their ranges together, N; NaN: unknown; empty: not estimated.
+std::optional<double> error_of(const Report& report, const std::vector<std::string>& elements) {
+  if (!report.estimate.errors) return {};
   double sum = 0.0;
   for (const std::string& element : elements)
     for (const char* const name : {".friction", ".capacity"})
       if (const ChannelRange* const range = report.find(element + name))
-        for (double ChannelError::*const end : {&ChannelError::low, &ChannelError::high})
-          sum += report.error_of(*range, end).value_or(std::nan(""));
+        for (double ChannelError::*const end : {&ChannelError::low, &ChannelError::high}) sum += *report.error_of(*range, end);
   return sum;
 }
 
@@ -137,12 +139,16 @@ BothPlanes both_planes(const std::string& name, const CaseFriction& one, const C
   }
   const SharedUse use = shared_use(contact, {one.trace, other.trace});
   result.value = both.limit.share = use.use;
-  const double error = use.capacity > 0.0 ? use.error + (one.error + other.error) / use.capacity : 0.0;
+  constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
+  const double force_error = one.error.value_or(k_unknown) + other.error.value_or(k_unknown);
+  const double error = use.capacity > 0.0 ? use.error + force_error / use.capacity : 0.0;
   result.error = both.limit.share_error = error;
   result.t = use.at;
   result.reserve = 1.0 - use.use;
   const std::string asked = "Both planes together ask for " + rounded_text(100.0 * use.use, 4) + " % of the friction '" + name + "'";
   if (use.slips) both.doubt = asked + ", and how far they slide is not computed.";
+  else if (const bool is_estimated = one.error && other.error; is_estimated && std::isnan(error))
+    both.doubt = asked + ", and the error of that is unknown.";
   else if (use.use < 1.0 && use.use + error >= 1.0) both.doubt = asked + ", which is known to " + rounded_text(100.0 * error, 2) + " %.";
   return both;
 }
