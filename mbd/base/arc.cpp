@@ -52,7 +52,8 @@ double binary_scale(double x) {
   return std::bit_cast<double>(std::clamp<std::int64_t>(2046 - e, 1, 2046) << 52);
 }
 
-// Returns the angle of (|x|, y), both positive and finite; the supplementary angle if `is_left` (x < 0).
+// Returns the angle of the point (x, y), given |x| and y, both positive and finite. `is_left`: x is negative, so the result is π minus the
+// angle of (|x|, y).
 double first_quadrant(double y, double x, bool is_left) {
   double large = std::max(x, y), small = std::min(x, y);
   if (large < 0x1p-1000) large *= 0x1p80, small *= 0x1p80;
@@ -67,7 +68,7 @@ double first_quadrant(double y, double x, bool is_left) {
   return from(k_half_pi, is_left ? 1.0 : -1.0, arc);
 }
 
-// Returns the angle if a coordinate is zero or infinite.
+// Returns the angle of (x, y) if a coordinate is zero or infinite; arguments as for first_quadrant().
 double along_axes(double y, double x, bool is_left) {
   if (std::isinf(x) && std::isinf(y)) return is_left ? 3.0 * (k_half_pi.hi / 2.0) : k_half_pi.hi / 2.0;
   if (y == 0.0 || std::isinf(x)) return is_left ? k_pi.hi : 0.0;
@@ -84,7 +85,7 @@ double atan2(double y, double x) {
   return std::copysign(angle, y);
 }
 
-// √s of s = x² + y² in double-double arithmetic: the rounded root with one Newton correction.
+// Returns √s for s = x² + y², both in double-double arithmetic: the rounded root with one Newton correction.
 double hypot(double x, double y) {
   if (std::isinf(x) || std::isinf(y)) return std::numeric_limits<double>::infinity();
   double large = std::abs(x), small = std::abs(y);

@@ -11,7 +11,7 @@ namespace steplap {
 
 namespace {
 
-constexpr std::chrono::milliseconds k_between{10}; // readings of the memory
+constexpr std::chrono::milliseconds k_between{10}; // least time between two readings of the memory
 
 // Returns the resident memory of this process, bytes; 0 if it is unknown.
 double resident_memory() {

@@ -1,4 +1,4 @@
-// Limits of time and memory of a computation, as a question that it asks while it runs.
+// Limits of wall time and memory for a computation, checked by a StopQuestion (stop.h) that the computation calls while it runs.
 #pragma once
 
 #include "mbd/base/stop.h"
@@ -13,8 +13,8 @@ struct Budget {
   std::optional<double> memory; ///< resident memory of the whole process, bytes
 };
 
-/// Returns a question that is answered when the budget is used up, or when `otherwise` is answered. The time runs from this call. Memory is
-/// read from /proc/self/statm at most every 10 ms; where that file is missing, it is not limited.
+/// Returns a question whose answer is not empty once the budget is used up; an answer of `otherwise` comes first. The time is counted from
+/// this call. Memory is read from /proc/self/statm, at most every 10 ms; without that file it is not limited.
 [[nodiscard]] StopQuestion within(const Budget& budget, StopQuestion otherwise);
 
 } // namespace steplap

@@ -1,5 +1,5 @@
-// Counter-based random numbers: number k of sample n of a stream is a function of (seed, stream, n, k) only. Samples can therefore be drawn
-// in any order and by any number of threads with the same result. Generator: Philox 4x32-10 (J. Salmon, M. Moraes, R. Dror, D. Shaw, SC
+// Counter-based random numbers: number k of sample n of a stream is a function of (seed, stream, n, k) only. Drawing samples in another
+// order, or in several threads, therefore does not change them. Generator: Philox 4x32-10 (J. Salmon, M. Moraes, R. Dror, D. Shaw, SC
 // 2011), as in their library Random123.
 #pragma once
 

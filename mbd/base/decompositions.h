@@ -52,7 +52,7 @@ public:
   [[nodiscard]] NullSpace null_space(double least) const;
   /// Returns a solution x of a x ≈ right (least squares) that uses only the rank() pivot columns; other entries of x are zero.
   [[nodiscard]] MatX solve_by_rank(const MatX& right) const;
-  /// The same least-squares problem, using all columns with a nonzero pivot, however small.
+  /// Returns a least-squares solution x of a x ≈ right that uses all columns with a nonzero pivot, however small.
   [[nodiscard]] MatX solve(const MatX& right) const;
 
 private:
@@ -75,7 +75,7 @@ private:
 [[nodiscard]] MatX solve_lower(const MatX& a, const MatX& right);
 /// Returns a⁻¹ right for symmetric a, by LDLᵀ with pivoting.
 [[nodiscard]] VecX solve_symmetric(const MatX& a, const VecX& right);
-/// The same for several right sides, one per column.
+/// Returns a⁻¹ right for symmetric a, with one right-hand side per column.
 [[nodiscard]] MatX solve_symmetric(const MatX& a, const MatX& right);
 
 /// LU decomposition with row pivoting, Π a = L U, of a square regular matrix. factor() and solve(right, x) do not allocate if a matrix of

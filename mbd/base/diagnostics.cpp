@@ -50,8 +50,8 @@ std::string initials(const std::string& name) {
   return letters;
 }
 
-// Returns true if at least half of the letters of the longer word are in the shorter one, too. Otherwise short words that have no letter in
-// common would be taken for each other.
+// Returns true if at least half of the letters of the longer word occur in the shorter one, too. A small edit distance alone would also
+// match short words without a common letter.
 bool share_letters(std::string a, std::string b) {
   std::sort(a.begin(), a.end());
   std::sort(b.begin(), b.end());

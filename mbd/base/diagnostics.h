@@ -1,5 +1,6 @@
 // Exceptions of the library. A ModelError carries all errors of a model, each with its place in the file. A NumericalFailure ends a
-// computation. A FileError names a file that cannot be used. The library throws std::invalid_argument for wrong arguments, and nothing else.
+// computation. A FileError names a file that cannot be used. Wrong arguments of functions throw std::invalid_argument; the library throws
+// nothing else.
 #pragma once
 
 #include <cstddef>
@@ -69,7 +70,7 @@ private:
   std::size_t line_ = 0;
 };
 
-/// The name in `known` with the least edit distance to `word`; "" if all are too far to be meant.
+/// The name in `known` with the least edit distance to `word`; "" if none is similar enough to be a misspelling.
 [[nodiscard]] std::string nearest_name(const std::string& word, const std::vector<std::string>& known);
 
 /// " (did you mean 'x'?)" or "".

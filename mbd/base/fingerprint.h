@@ -21,7 +21,7 @@ public:
     hash_ *= 0x9e3779b97f4a7c15;
   }
   void add(long number) { add(static_cast<std::uint64_t>(number)); }
-  /// All NaN count as equal, and so do +0 and −0.
+  /// Adds a number. All NaN give the same hash, and so do +0 and −0.
   void add(double x) { add(x != x ? ~std::uint64_t{0} : std::bit_cast<std::uint64_t>(x == 0.0 ? 0.0 : x)); }
   void add(std::string_view text) {
     add(static_cast<std::uint64_t>(text.size()));

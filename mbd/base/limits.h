@@ -14,14 +14,14 @@ inline constexpr double k_most_resampling = 100.0;
 /// Largest number of keys in a table of a model file, such as [parameters]. Keys are searched one by one: reading 10 000 takes 0.5 s.
 inline constexpr std::size_t k_most_keys = 10'000;
 
-/// Largest size of the texts that one repeated entry may make, bytes: 200 for each of the most entries.
+/// Largest total size of the texts produced by repeating one entry, bytes: 200 per copy for the largest number of copies.
 inline constexpr std::size_t k_most_repeated_text = 20'000'000;
 
-/// Largest number of operations of all [[channel]] formulas together. A formula contains the operations of the formulas that it names, so
-/// that n channels, each of which names the one before, need some 1.5 n²: a chain of 570, which runs for 0.7 s, reaches the limit.
+/// Largest number of operations of all [[channel]] formulas together. A channel used in a formula is replaced by its own operations. A
+/// chain of n channels, each defined by the one before, therefore has some 1.5 n² operations: 570 channels reach the limit, and take 0.7 s.
 inline constexpr std::size_t k_most_channel_operations = 500'000;
 
-/// Largest number of [[channel]] formulas of which each names the next.
+/// Largest length of a chain of [[channel]] formulas, each of which uses the next.
 inline constexpr int k_longest_channel_chain = 1000;
 
 } // namespace steplap

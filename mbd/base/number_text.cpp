@@ -5,7 +5,8 @@
 
 #define FMT_HEADER_ONLY // its shared object would be loaded at every start
 #define FMT_USE_FULL_CACHE_DRAGONBOX 1
-// Own namespace for fmt: spdlog contains another fmt with a smaller table of the same name, and the linker would keep only one of the two.
+// fmt is included in a namespace of this file, because spdlog contains another fmt with a smaller table of the same name, and the linker
+// would keep only one of the two.
 #define FMT_BEGIN_NAMESPACE                                                                                                                \
   namespace fmt {                                                                                                                          \
   inline namespace full_cache {
@@ -145,8 +146,8 @@ void put_digits(char* at, const Digits& d, unsigned last) {
   at[16] = static_cast<char>('0' + last);
 }
 
-/// Writes seventeen digits with a decimal point after the first `before` of them (0 < before < 17); eighteen bytes. Uses stores only:
-/// loading bytes just stored with another width would stall the processor.
+/// Writes seventeen digits with a decimal point after the first `before` of them (0 < before < 17); eighteen bytes. Only stores are used,
+/// because loading bytes that were just stored with another width stalls the processor.
 void put_with_point(char* at, const Digits& d, unsigned last, int before) {
   put_digits(at + 1, d, last); // digits after the point are now in place
   std::uint64_t word = d.low;

@@ -23,7 +23,7 @@ struct PivotedQr::Factor : Eigen::ColPivHouseholderQR<MatX> {
   using ColPivHouseholderQR::ColPivHouseholderQR;
 };
 
-// Eigen does not accept matrices without rows or columns; these are treated here.
+// Eigen does not accept matrices without rows or columns, so these are treated separately.
 PivotedQr::PivotedQr(const MatX& a, double threshold)
     : rows_(a.rows()), cols_(a.cols()),
       factor_(std::make_unique<Factor>(std::max<Eigen::Index>(rows_, 1), std::max<Eigen::Index>(cols_, 1))) {

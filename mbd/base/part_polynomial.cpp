@@ -74,14 +74,16 @@ struct Table {
 
 const Table k_table; // constructed before main(), so threads need no synchronisation
 
-// Part of a gap; `length` is its length relative to [0, 1].
+// Subinterval of a gap (the interval between two neighbouring nodes). `length` is relative to [0, 1]; `begins_at_place` and
+// `ends_at_place`: its end is a node, where p = f exactly.
 struct Stretch {
   Values c; // Bernstein coefficients of p
   double length;
   bool begins_at_place, ends_at_place;
 };
 
-// De Casteljau subdivision at `share`: returns the coefficients of the left part; `rest` becomes the right part.
+// Divides a subinterval at the fraction `share` of its length (de Casteljau). Returns the Bernstein coefficients of the left part; `rest`
+// receives those of the right part.
 Values take_away(Values& rest, double share) {
   Values left;
   for (std::size_t n = 0; n <= k_order; ++n) {
@@ -127,7 +129,8 @@ bool is_above(const Stretch& s, double floor, double error, int depth) {
   return is_above(left, floor, error, depth - 1) && is_above(right, floor, error, depth - 1);
 }
 
-// State of a walk along a gap from left to right that checks whether f falls below the floor exactly once.
+// Result so far of examining a gap from left to right for a single fall of f below the floor. `in_doubt`: more than one crossing cannot be
+// excluded.
 enum class FallState { above, falling, below, in_doubt };
 
 FallState walk(const Stretch& s, FallState so_far, double floor, double error, int depth) {

@@ -22,8 +22,8 @@ constexpr DoubleDouble k_ln2_on_grid{0x1.62e42fefa3800p-1, 0x1.ef35793c76730p-45
 constexpr double k_grid = 0x1p-42;
 constexpr DoubleDouble k_per_ln10{0x1.bcb7b1526e50ep-2, 0x1.95355baaafad3p-57};
 
-/// Table entry for numbers in [1 + i/128, 1 + (i+1)/128), or half of them from √2 on: a 9-bit approximation of the reciprocal, and the
-/// logarithm of that reciprocal with opposite sign, whose `hi` is a multiple of 2⁻⁴².
+/// Table entry for numbers in [1 + i/128, 1 + (i+1)/128); from √2 on, in half that interval. `inverse` is a 9-bit approximation of the
+/// reciprocal. The logarithm is that of the reciprocal with opposite sign, and its `hi` is a multiple of 2⁻⁴².
 struct LogEntry {
   double inverse = 1.0;
   DoubleDouble log;
@@ -106,8 +106,8 @@ DoubleDouble log_of(double x) {
   return quick_two_sum(second.hi, small);
 }
 
-// Returns e^(hi + lo), |lo| ≤ 2⁻²⁴ |hi|. The exponent is k ln 2/64 + r with |r| slightly above ln 2/128 at most; the first omitted term of
-// e^r − 1 = r + r²/2 + … is r⁷/7!. Subnormal results are rounded twice.
+// Returns e^(hi + lo) for |lo| ≤ 2⁻²⁴ |hi|. The argument is written as k ln 2/64 + r, with |r| slightly above ln 2/128 at most; the first
+// omitted term of e^r − 1 = r + r²/2 + … is r⁷/7!. Subnormal results are rounded twice.
 double exp_of(double hi, double lo) {
   if (hi > 710.0) return k_infinity;
   if (hi < -746.0) return 0.0;
@@ -124,7 +124,8 @@ double exp_of(double hi, double lo) {
   return value * two_to(half) * two_to(e - half);
 }
 
-// Returns x^y for ordinary arguments. y log x is computed in two parts, of which the larger is exact.
+// Returns x^y for positive x where neither argument is zero, infinite or NaN. The product y log x is computed in two parts, of which the
+// larger is exact.
 double positive_power(double x, double y) {
   const DoubleDouble log = log_of(x);
   const double y_high = without_last<27>(y), log_high = without_last<27>(log.hi);

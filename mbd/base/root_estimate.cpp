@@ -53,7 +53,7 @@ RootEstimate::Value RootEstimate::at(double x) const {
   return p;
 }
 
-// Newton's method, with bisection where it would leave the bracket.
+// Finds the root of the interpolating polynomial by Newton's method, with a bisection step where Newton's would leave the bracket.
 double RootEstimate::root(double low, double high, double resolution) const {
   const double at_low = at(low).value, at_high = at(high).value;
   double x = low + (high - low) * at_low / (at_low - at_high);

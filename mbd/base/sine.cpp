@@ -28,14 +28,14 @@ Remainder reduce(double x) {
   return {rest.hi, rest.lo, static_cast<unsigned>(static_cast<int>(k))};
 }
 
-// 2/π = 0.101000101…b after 64 zeros, 1344 bits.
+// Binary digits of 2/π: 64 zero bits, then the first 1344 bits of 0.101000101….
 constexpr std::uint64_t k_two_over_pi_bits[22] = {
     0x0000000000000000, 0xa2f9836e4e441529, 0xfc2757d1f534ddc0, 0xdb6295993c439041, 0xfe5163abdebbc561, 0xb7246e3a424dd2e0,
     0x06492eea09d1921c, 0xfe1deb1cb129a73e, 0xe88235f52ebb4484, 0xe99c7026b45f7e41, 0x3991d639835339f4, 0x9c845f8bbdf9283b,
     0x1ff897ffde05980f, 0xef2f118b5a0a6d1f, 0x6d367ecf27cb09b7, 0x4f463f669e5fea2d, 0x7527bac7ebe5f17b, 0x3d0739f78a5292ea,
     0x6bfb5fb11f8d5d08, 0x56033046fc7b6bab, 0xf0cfbc209af4361d, 0xa9e391615ee61b08};
 
-// Returns 64 of these bits, beginning with bit number `first`.
+// Returns 64 bits of k_two_over_pi_bits, beginning with bit number `first`.
 std::uint64_t bits_from(int first) {
   const int word = first / 64, shift = first % 64;
   const std::uint64_t* w = k_two_over_pi_bits + word;

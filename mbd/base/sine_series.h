@@ -21,8 +21,8 @@ template <class Number> constexpr TwoParts<Number> two_parts(Number a, Number b)
 }
 
 /// Returns x − k π/2 for the integer k nearest to 2x/π (Cody and Waite). Precondition: |x| < k_far. The first difference is exact, because
-/// x and k times the first part are within a factor of two. The other differences keep their rounding errors, since up to 60 bits cancel if
-/// x is near a multiple of π/2.
+/// x and k times the first part are within a factor of two. The rounding errors of the other differences are kept, because up to 60 bits
+/// cancel near a multiple of π/2.
 template <class Number> constexpr TwoParts<Number> beyond_multiple(Number x, Number k) {
   const TwoParts<Number> first = two_parts<Number>(x - k * k_half_pi[0], -k * k_half_pi[1]);
   const TwoParts<Number> second = two_parts<Number>(first.hi, -k * k_half_pi[2]);

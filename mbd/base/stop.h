@@ -18,8 +18,8 @@ public:
 /// Returns the reason to stop, or "" to continue.
 using StopQuestion = std::function<std::string()>;
 
-/// While an object of this class exists, stop_if_asked() in the same thread asks `question`, which must outlive it. An empty question
-/// leaves that of an enclosing scope in place.
+/// While an object of this class exists, stop_if_asked() in the same thread calls `question`, which must outlive the object. If `question`
+/// is empty, that of the enclosing scope remains in use.
 class StopScope {
 public:
   /// Keeps a reference to `question`.
@@ -32,7 +32,8 @@ private:
   const StopQuestion* before_;
 };
 
-/// Throws RunStopped if the question of the innermost scope has an answer. `where` ends the message: "in the search for rest".
+/// Calls the question of the innermost scope and throws RunStopped if it returns a reason. `where` ends the message: "in the search for
+/// rest".
 void stop_if_asked(const char* where);
 
 } // namespace steplap

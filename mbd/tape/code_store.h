@@ -1,4 +1,5 @@
-// Machine code compiled in this process, stored by tape: runs of the same scene with other numbers have the same tapes and share it.
+// Store of the machine code compiled in this process. Runs of the same model with other parameter values record equal tapes (tape.h) and
+// share one code.
 #pragma once
 
 #include "mbd/tape/machine_code.h"
@@ -11,12 +12,12 @@
 
 namespace steplap {
 
-/// A tape with its machine code, which is compiled once it pays. Thread-safe.
+/// A tape with its machine code, which is compiled after enough evaluations to repay the compilation. Thread-safe.
 class TapeCode {
 public:
   /// Copies `tape` without its constants.
   explicit TapeCode(const Tape& tape) : tape_(tape) { tape_.constants = {}; }
-  /// Returns true if `tape` is the same computation; constants may differ.
+  /// Returns true if `tape` has the same steps, inputs and outputs; the values of constants may differ.
   [[nodiscard]] bool is_of(const Tape& tape) const {
     static_assert(std::has_unique_object_representations_v<TapeStep>);
     return tape_.steps.size() == tape.steps.size() && tape_.outputs == tape.outputs && tape_.input_count == tape.input_count &&
@@ -25,15 +26,15 @@ public:
   }
   /// Returns the tape, without constants.
   [[nodiscard]] const Tape& tape() const { return tape_; }
-  /// Returns the code; null if it is not compiled yet.
+  /// Returns the compiled code; null if it is not compiled yet, or if no code is available on this machine.
   [[nodiscard]] const MachineCode* code() const;
-  /// Counts evaluations made without the code. Compiles it as soon as it would have paid for itself.
+  /// Adds to the number of evaluations made without code. Compiles the tape when this number reaches k_enough.
   void count_uses(long evaluations);
-  /// Compiles the code now, unless that has been done.
+  /// Compiles the tape now, unless that was done before.
   void make();
 
 private:
-  /// Number of evaluations by code that save the time of compilation.
+  /// Number of evaluations from which on the time saved by code exceeds the time of compilation.
   static constexpr long k_enough = 600;
 
   Tape tape_;
@@ -43,11 +44,11 @@ private:
   MachineCode made_;
 };
 
-/// Evaluations that are likely to have the same tape: how many were made without code, and the tape recorded last. The next recording is
-/// compared with that tape, which is faster than writing a new one. Thread-safe.
+/// Evaluations with a common key, which are expected to record equal tapes. Holds the number of evaluations made without code and the last
+/// recorded tape. A new recording is compared with that tape step by step, which is faster than storing a new one. Thread-safe.
 class TapeFamily {
 public:
-  /// Counts an evaluation made without code.
+  /// Counts one evaluation made without code.
   void count_evaluation() { made_.fetch_add(1, std::memory_order_relaxed); }
   [[nodiscard]] long made() const { return made_.load(std::memory_order_relaxed); }
   /// Returns the tape recorded last; null if there is none, or if its code is not compiled.
@@ -60,8 +61,8 @@ private:
   std::shared_ptr<TapeCode> code_;
 };
 
-/// Returns the family of evaluations with this key. Different evaluations should have different keys; a collision only costs time.
-/// Thread-safe.
+/// Returns the family of the evaluations with this key, created on first use. Two different evaluations with the same key still give
+/// correct results, but compare their tapes in vain. Thread-safe.
 [[nodiscard]] std::shared_ptr<TapeFamily> tape_family(std::uint64_t key);
 
 /// Returns the TapeCode for `tape`, the same object for equal tapes in all threads. The store holds some hundred tapes and is emptied when

@@ -24,10 +24,11 @@ constexpr int k_most_frame = 1 << 18; ///< largest stack frame, bytes
 constexpr int k_page = 4096;
 constexpr int k_mask_copies = 4;
 constexpr int k_line = 64; ///< cache line, bytes
-/// Bytes before the first instruction: a cache line with −0 and its complement, and one with the literals.
+/// Bytes before the first instruction: a cache line with the masks −0 and its complement, and one with the literals.
 constexpr int k_masks_size = 2 * k_line;
 static_assert(2 * 8 * k_mask_copies == k_line && sizeof k_literals <= k_line);
-// Beginning of the frame if functions are called: the arguments of the code, and whether all outputs are requested.
+// Offsets in the stack frame at which the arguments of the code are saved across calls: inputs, arrays, outputs, and whether all outputs
+// are requested.
 constexpr int k_saved_inputs = 0, k_saved_arrays = 8, k_saved_outputs = 16, k_saved_wish = 24;
 constexpr int k_saved_size = 64;
 
@@ -73,7 +74,7 @@ RegisterRules rules_for(InstructionSet instructions) {
   return rules;
 }
 
-/// An invalid instruction would be an error of this file.
+/// Throws for an instruction that asmjit rejects, which would be an error in this file.
 class Faults : public asmjit::ErrorHandler {
 public:
   void handleError(asmjit::Error, const char* message, asmjit::BaseEmitter*) override {
@@ -121,7 +122,7 @@ private:
       const int size = call_slots_begin() + 8 * plan_.call_slots;
       a_.sub(x86::rsp, size);
       a_.and_(x86::rsp, -64);
-      // Touches page after page, so that a stack overflow is detected at the end of the stack.
+      // Touches each page of the new frame, so that an overflow hits the guard page at the end of the stack and is detected.
       for (int offset = size - k_page; offset > 0; offset -= k_page) a_.test(x86::ptr(x86::rsp, offset), x86::eax);
     }
     if (plan_.has_calls) {
@@ -133,7 +134,8 @@ private:
     take_arrays();
   }
 
-  // The array of constants comes last, because its register contains the address of all of them.
+  // Loads the addresses of the arrays into registers. That of the constants comes last, because it overwrites rsi, the address of
+  // CodeArrays.
   void take_arrays() {
     const auto take = [this](x86::Gp to, std::size_t from) { a_.mov(to, x86::ptr(x86::rsi, static_cast<std::int32_t>(from))); };
     if (plan_.has_later_inputs) take(x86::r8, offsetof(CodeArrays, later_inputs));
@@ -222,7 +224,8 @@ private:
     }
   }
 
-  // min a, b is a < b ? a : b in the processor and on the tape; max a, b is a > b ? a : b, so a and b are exchanged.
+  // Emits an arithmetic instruction. The processor's min(a, b) is a < b ? a : b, as on the tape. Its max(a, b) is a > b ? a : b; the plan
+  // exchanges a and b to get the tape's result.
   void arithmetic(const PlannedInstruction& i) {
     const asmjit::InstId name = name_of(i.operation);
     if (i.operation == TapeOperation::square_root) {
@@ -235,10 +238,11 @@ private:
     }
   }
 
-  // first is b and second is a: a < b means that b is above.
+  // Emits a comparison, with `first` the tape's b and `second` its a. The processor's "b above a" is true exactly for a < b, and false for
+  // NaN.
   void condition(const PlannedInstruction& i) {
     a_.emit(names_.compare, reg(i.first), operand(i.second));
-    if (i.operation == TapeOperation::if_less) a_.jbe(failed_); // NaN counts as below
+    if (i.operation == TapeOperation::if_less) a_.jbe(failed_); // jumps to the failure exit for b ≤ a or NaN
     else a_.ja(failed_);
   }
 

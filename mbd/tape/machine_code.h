@@ -17,7 +17,7 @@ namespace steplap {
 /// Instruction sets; each includes the previous ones.
 enum class InstructionSet : std::uint8_t { sse2, avx2, avx512 };
 
-/// Arrays of compiled code in addition to its first inputs and its first array of outputs.
+/// Arrays that the code uses in addition to its first inputs and the first array of outputs.
 struct CodeArrays {
   static constexpr int k_more = 3;
 
@@ -47,12 +47,13 @@ public:
 
   explicit operator bool() const { return run_ != nullptr; }
 
-  /// Evaluates the tape. Returns false, with outputs unchanged, if a condition fails. Array lengths are those of the tape, and `outputs`
-  /// must not overlap the others. Without `all` possibly only the usual outputs are computed. Thread-safe. Precondition: not empty.
+  /// Evaluates the tape. Returns false, with outputs unchanged, if a condition of the tape is not met. The lengths of the arrays are those
+  /// of the tape; `outputs` must not overlap the others. If `all` is false, only the usual outputs (Tape::usual_outputs) are guaranteed to
+  /// be computed. Thread-safe. Precondition: not empty.
   bool run(const double* inputs, const CodeArrays& arrays, double* outputs, bool all) const {
     return run_(inputs, &arrays, outputs, all ? 1 : 0) != 0;
   }
-  /// The same for a tape whose inputs and outputs are in one array each.
+  /// Evaluates a tape whose inputs are in one array, and whose outputs are in one array.
   bool run(const double* inputs, const double* constants, double* outputs, bool all = true) const {
     return run(inputs, CodeArrays{constants}, outputs, all);
   }

@@ -15,9 +15,9 @@ using Kind = PlannedInstruction::Kind;
 
 constexpr std::int32_t k_never = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t k_none = -1;
-constexpr std::int64_t k_worth_of_store = 100; ///< a value that needs no store is evicted even if it is used sooner by this number of steps
-constexpr std::int32_t k_store_outputs = -1;   ///< marker in the order: outputs known so far are stored
-constexpr std::int32_t k_leave = -2;           ///< marker in the order: usual outputs are stored
+constexpr std::int64_t k_worth_of_store = 100; ///< steps; a value with a copy in memory is evicted even if needed sooner by this number
+constexpr std::int32_t k_store_outputs = -1;   ///< marker in `order_`: store the outputs computed so far
+constexpr std::int32_t k_leave = -2;           ///< marker in `order_`: the usual outputs are stored; the code may return
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
@@ -75,7 +75,7 @@ private:
     if (tape_.usual_outputs > 0 && tape_.usual_outputs < tape_.outputs.size()) place_leave();
   }
 
-  // Places k_leave after the last usual output and the last condition, and after k_store_outputs.
+  // Inserts k_leave into the order: after the last usual output, the last condition and k_store_outputs.
   void place_leave() {
     std::size_t last = stores_;
     for (std::size_t p = stores_; p < order_.size(); ++p)
@@ -108,7 +108,7 @@ private:
 
   static OperandPlace place(OperandPlace::Kind kind, std::int32_t index) { return {kind, 0, index}; }
 
-  // Inputs and constants are in memory; sine and cosine of the same argument are computed together.
+  // Sets the memory locations of inputs and constants, and finds the sines and cosines of one argument, which are computed together.
   void visit_steps() {
     for (std::size_t i = 0; i < tape_.steps.size(); ++i) {
       const TapeStep& s = tape_.steps[i];
@@ -126,7 +126,7 @@ private:
     }
   }
 
-  // All calls share the slots of arguments. Results have slots of their own, since they may be used later.
+  // Assigns stack slots to a call. All calls share the slots of arguments; results have their own slots, since later steps may use them.
   void visit_call(std::size_t i) {
     const TapeStep& s = tape_.steps[i];
     Call& call = calls_[static_cast<std::int32_t>(i)];
@@ -274,19 +274,19 @@ private:
     i.second = second;
   }
 
-  // Prevents eviction of the value while this step is planned.
+  // Protects the register of the value, if it has one, from eviction while this step is planned.
   void keep(std::int32_t step) {
     const int r = values_[at(step)].reg;
     busy_ |= std::uint32_t{r >= 0} << (r & 31);
   }
 
-  // Returns a register that contains the value for this step.
+  // Returns a register that contains the value, loading it if necessary; the register is protected during this step.
   int in_register(std::int32_t step) {
     Value& v = values_[at(step)];
     if (v.reg < 0) {
       const int r = free_register();
       load(r, v.home);
-      // The value stays there only if no other must be evicted for it.
+      // A loaded value keeps its register for later uses only if registers are plentiful; otherwise the register is free after this step.
       if (rules_.has_three_operands && v.next != k_never && std::popcount(free_) > 2) take(r, step);
       else free_ &= ~(1u << r), passing_ |= 1u << r;
       busy_ |= 1u << r;
@@ -305,7 +305,7 @@ private:
     return v.home;
   }
 
-  // Frees the registers of operands that are not used any more.
+  // Frees the registers of the step's operands that have no further use.
   void let_operands_go(const TapeStep& s) {
     release_register_if_dead(values_[at(s.a)]);
     if (takes_two(s.operation)) release_register_if_dead(values_[at(s.b)]);
@@ -319,7 +319,7 @@ private:
 
   bool stays(int r) const { return (passing_ >> r & 1) == 0 && values_[at(owner_[r])].next != k_never; }
 
-  // Returns the destination register of the result; `first` is copied to it if necessary.
+  // Returns the register for the result of the step. With two-operand instructions `first` is moved or copied to it.
   int destination(const TapeStep& s, int first) {
     if (rules_.has_three_operands) {
       let_operands_go(s);
@@ -436,7 +436,7 @@ private:
 
   // --- outputs ---
 
-  // Registers that the value of the step is in register r.
+  // Records that register r holds the value of step number p of the order, and stores the outputs that have this value.
   void define(std::size_t p, int r) {
     const std::int32_t step = order_[p];
     Value& v = values_[at(step)];
@@ -453,7 +453,7 @@ private:
     if (v.home.kind == OperandPlace::Kind::nowhere) v.home = to;
   }
 
-  // Stores the outputs of a value that is in memory.
+  // Copies a value that is in memory to the outputs that have this value.
   void store_known(std::int32_t step) {
     Value& v = values_[at(step)];
     if (v.position > static_cast<std::int32_t>(stores_))
@@ -482,7 +482,7 @@ private:
   const Tape& tape_;
   const RegisterRules rules_;
   std::vector<std::int32_t> order_;
-  std::size_t stores_ = 0; ///< position at which outputs known so far are stored; later ones are stored immediately
+  std::size_t stores_ = 0; ///< position in the order at which all outputs computed so far are stored; later ones are stored immediately
   std::vector<Value> values_;
   std::vector<NextUses> next_;
   std::vector<std::int32_t> next_output_;        ///< next output with the same value
@@ -512,7 +512,7 @@ std::vector<std::int32_t> order_of_steps(const Tape& tape) {
       if (is_done(tape.steps[at(i)])) order.push_back(i);
     return order;
   }
-  // Rank of each step: 0 if calls depend on it, 1 if conditions or usual outputs do, otherwise 2.
+  // Rank of each step in the order: 0 if calls depend on it, 1 if conditions or usual outputs do, otherwise 2.
   std::vector<char> turn(tape.steps.size(), has_rest ? char{2} : char{1});
   for (std::size_t k = 0; has_rest && k < tape.usual_outputs; ++k) turn[at(tape.outputs[k])] = 1;
   for (std::int32_t i = n; i-- > 0;) {

@@ -2,8 +2,8 @@
 //
 // The code has no branches, so the position of the next use of each value is known. If registers do not suffice, the value with the latest
 // next use is evicted (L. A. Belady, IBM Systems Journal 5 (1966) 78), preferably one that is in memory already: an input, a constant, or a
-// value stored before. A value in memory is read by the instruction that uses it, without a separate load. The plan is independent of the
-// processor's instructions.
+// value stored before. A value in memory is read by the instruction that uses it, without a separate load. The plan depends on the
+// processor only by RegisterRules.
 #pragma once
 
 #include "mbd/tape/tape.h"
@@ -45,7 +45,7 @@ struct PlannedInstruction {
     sin_cos,    ///< slots sine_slot and cosine_slot = sine and cosine of second, in memory; all registers are overwritten
     call,       ///< calls the function whose address is the first argument; arguments begin at call slot `second`, results at call slot
                 ///< `result_slot`; all registers are overwritten
-    leave,      ///< usual outputs are stored and conditions checked: evaluation ends here if no more is requested
+    leave,      ///< usual outputs are stored and conditions checked; the code returns here unless all outputs are requested
   };
   TapeOperation operation = TapeOperation::constant;
   Kind kind = Kind::load;
@@ -70,12 +70,12 @@ struct RegisterPlan {
   bool has_calls = false;
 };
 
-/// Returns the order in which the steps of the tape are executed (without inputs, constants and arguments): first those that sines, cosines
-/// and calls depend on, so that few values must be saved across these; last those needed only for outputs beyond the usual ones; otherwise
-/// as recorded.
+/// Returns the order in which the steps of the tape are executed, without inputs, constants and arguments. The steps on which sines,
+/// cosines and calls depend come first, so that few values must be saved across calls. Steps needed only for outputs other than the usual
+/// ones come last. Otherwise the recorded order is kept.
 [[nodiscard]] std::vector<std::int32_t> order_of_steps(const Tape& tape);
 
-/// Returns the plan. Steps that no output and no condition depends on are omitted.
+/// Returns the plan for the steps in `order`. Steps on which no output and no condition depends are omitted.
 [[nodiscard]] RegisterPlan plan_registers(const Tape& tape, const std::vector<std::int32_t>& order, const RegisterRules& rules);
 
 } // namespace steplap

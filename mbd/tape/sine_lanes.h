@@ -9,7 +9,7 @@ void sin_cos_of_two(const double* x, double* sines, double* cosines);   ///< SSE
 void sin_cos_of_four(const double* x, double* sines, double* cosines);  ///< AVX2
 void sin_cos_of_eight(const double* x, double* sines, double* cosines); ///< AVX-512 F and DQ
 
-/// As sin_cos_of_eight, bit-identical, on any processor with its best instructions.
+/// Computes sines[l], cosines[l] = portable::sin_cos(x[l]) for 8 lanes, bit-identical, by the best instructions of the processor at hand.
 void sin_cos_of_block(const double* x, double* sines, double* cosines);
 
 } // namespace steplap

@@ -1,6 +1,6 @@
 // Implementation for the sources that are compiled for one instruction set each (sine_two.cpp and others). The header contains only
-// templates over the number of lanes and calls nothing of the standard library. Otherwise the linker could use a copy compiled for
-// instructions that the processor lacks in other code.
+// templates over the number of lanes and calls nothing of the standard library. Otherwise the linker could keep, for all of the program, a
+// copy of a library function that was compiled for instructions which the processor lacks.
 #pragma once
 
 #include "mbd/base/portable_math.h"
@@ -15,7 +15,7 @@ template <int lanes> struct Pack {
   using Bits __attribute__((vector_size(8 * lanes))) = std::uint64_t;
 };
 
-// As integers, bit patterns without sign are in the order of the numbers; ∞ and NaN come last.
+// Bit patterns of limits for |x|. Read as integers, doubles without sign have the order of their values; ∞ and NaN come last.
 constexpr std::uint64_t k_far_bits = 0x412e848000000000;     // portable::k_far
 constexpr std::uint64_t k_quarter_bits = 0x3fe921fb54442d18; // π/4, below which no reduction is needed
 constexpr std::uint64_t k_tiny_bits = 0x3e30000000000000;    // 2⁻²⁸, below which sin x = x and cos x = 1

@@ -1,5 +1,5 @@
-// Debian's asmjit is a static library built for programs. A shared library can contain it except for its reference to the address of
-// `stderr` in another library. With --wrap=stderr that reference is to this variable of the module.
+// Debian's asmjit is a static library made for programs. It refers to the address of `stderr` in the C library, which a shared library must
+// not contain. With the linker option --wrap=stderr it refers to the variable below instead.
 #include <cstdio>
 
 extern "C" {

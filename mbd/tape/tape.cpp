@@ -33,7 +33,7 @@ double result_of(TapeOperation o, double a, double b) {
   }
 }
 
-// A tape whose steps use steps that do not exist, or not yet, is an error of the recorder and must be reported.
+// Throws std::logic_error for a tape whose steps use steps that do not exist, or come later: an error of the recorder.
 class TapeCheck {
 public:
   explicit TapeCheck(const Tape& tape) : tape_(tape), has_constants_(!tape.constants.empty()) {}
@@ -72,14 +72,15 @@ private:
   const bool has_constants_;
 };
 
-/// A value of the simplified tape, possibly with opposite sign. No step is needed for the negation if the operation using it can take it
-/// over: x + (−y) = x − y, (−x) y = −(x y), bit-identical.
+/// Step of the simplified tape, possibly with opposite sign. A negation needs no step of its own if the operation that uses it can absorb
+/// it: x + (−y) = x − y, (−x) y = −(x y), bit-identical.
 struct Signed {
   std::int32_t step = -1;
   bool is_negative = false;
 };
 
-/// Makes each step only once. At most two steps are made for each step of the tape; they are found by a hash table with open addressing.
+/// Simplifies a tape and removes repeated steps, which are found by a hash table with open addressing. At most two steps are made for each
+/// step of the tape.
 class Simplifier {
 public:
   explicit Simplifier(const Tape& tape) : tape_(tape), table_(std::bit_ceil(4 * tape.steps.size() + 4), -1), value_(tape.steps.size()) {
@@ -126,7 +127,7 @@ private:
     return make(negate, x.step);
   }
 
-  // Returns true if x is that literal, whatever its sign.
+  // Returns true if the step of x is that literal; the sign of x is ignored.
   bool is(Signed x, std::int32_t literal) const { return made_[static_cast<std::size_t>(x.step)] == TapeStep{constant, literal, 0}; }
 
   Signed given(const TapeStep& s) {
@@ -136,8 +137,8 @@ private:
 
   static Signed turned(Signed x, bool is_turned) { return {x.step, x.is_negative != is_turned}; }
 
-  // Adding −0 changes nothing, not even the sign of a zero. If both terms are negative, −a − b is not replaced by −(a + b), whose zero has
-  // the other sign.
+  // Returns a + b. Adding −0 changes nothing, not even the sign of a zero. If both terms are negative, −a − b is not replaced by −(a + b),
+  // whose zero would have the other sign.
   Signed sum(Signed a, Signed b) {
     if (b.is_negative && is(b, k_zero)) return a;
     if (a.is_negative && is(a, k_zero)) return b;
@@ -204,7 +205,7 @@ private:
   std::vector<Signed> value_; ///< for each step of the original tape
 };
 
-// Returns the value of a step that has one and is not the result of a call.
+// Returns the value of a step other than a call, its arguments and its results.
 double value_of(const TapeStep& s, const double* inputs, const double* constants, const std::vector<double>& values) {
   if (s.operation == input) return inputs[s.a];
   if (s.operation == constant) return is_literal(s.a) ? k_literals[literal_index(s.a)] : constants[s.a];

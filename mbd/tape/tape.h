@@ -50,8 +50,8 @@ using TapeFunction = void (*)(const double* arguments, double* results);
   return is_commutative(o) || o == subtract || o == divide || o == minimum || o == maximum || is_condition(o);
 }
 
-/// Literals, which a constant step has in place of an index if its value allows simplifications: x · 1 is x for any x. A literal is part of
-/// the tape: with another value the tape is a different one.
+/// Literals. A constant step has one of these in place of an index if its value allows simplifications, such as x · 1 = x. Tapes with
+/// different literals are different tapes.
 inline constexpr std::int32_t k_one = -1, k_minus_one = -2, k_zero = -3, k_minus_zero = -4;
 /// Values of the literals, beginning with k_one.
 inline constexpr double k_literals[] = {1.0, -1.0, 0.0, -0.0};
@@ -66,7 +66,7 @@ struct TapeStep {
   friend bool operator==(const TapeStep&, const TapeStep&) = default;
 };
 
-/// Returns true if b is a step, too.
+/// Returns true if operand b of the step is a step, too.
 [[nodiscard]] constexpr bool has_second_step(const TapeStep& s) {
   return takes_two(s.operation) || (s.operation == TapeOperation::argument && s.b >= 0);
 }
@@ -81,7 +81,7 @@ struct OutputLocation {
 /// A recorded computation.
 struct Tape {
   std::vector<TapeStep> steps;
-  std::vector<double> constants; ///< values in the recorded evaluation; other evaluations have others in the same places
+  std::vector<double> constants; ///< values in the recorded evaluation; another evaluation of the same tape replaces them
   int input_count = 0;
   std::vector<std::int32_t> outputs;       ///< steps whose values are outputs
   std::size_t usual_outputs = 0;           ///< number of outputs, the first ones, that may be requested alone (MachineCode::run); 0: all or

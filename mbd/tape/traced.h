@@ -18,10 +18,10 @@
 
 namespace steplap {
 
-/// Thrown if the evaluation cannot be recorded for the present values.
+/// Thrown if the evaluation cannot be recorded with the present values.
 struct NotTraceable {};
 
-/// State of recording in a thread. Steps and constants are kept in memory that is reused.
+/// State of the recording in one thread. The memory of steps and constants is reused by the next recording.
 struct TapeWriter {
   /// Largest number of steps of one operation: itself, and a constant for each operand.
   static constexpr std::ptrdiff_t k_room = 3;
@@ -63,21 +63,22 @@ public:
   TapeNumber() = default;
   TapeNumber(double constant) : value_(constant) {} // conversion of constants
 
-  /// Starts recording in this thread, until finish() moves the result to `tape` or discards it (null). With a `known` tape only constants
-  /// are stored in `tape`, and finish() returns whether everything else equals the known one.
+  /// Starts recording in this thread. finish() ends it and moves the recorded tape to `tape`, or discards it if null. If `known` is given,
+  /// the recording is compared with that tape: finish() stores only the constants and returns true if everything else is equal.
   static void start(const Tape* known = nullptr);
   static bool finish(Tape* tape);
   /// Returns the next input, with its present value.
   [[nodiscard]] static TapeNumber input(double value);
   /// Makes x the next output.
   static void output(const TapeNumber& x);
-  /// Records a call of `function`, for operations that a tape does not have. It computes `results` from its own address and `arguments`. If
-  /// all arguments are constants, so are the results; a function that depends on anything else needs an argument that is not constant.
+  /// Records a call of `function`, for operations that a tape does not have. The call gets its own address as first argument, then
+  /// `arguments`. If all arguments are constants, so are the results; a function that depends on anything else must therefore have an
+  /// argument that is not constant.
   static void call(TapeFunction function, std::span<const TapeNumber> arguments, std::span<TapeNumber> results);
-  /// Marks the outputs so far as the usual ones (Tape::usual_outputs).
+  /// Makes the outputs recorded so far the usual ones (Tape::usual_outputs).
   static void end_usual_outputs() { TapeWriter::now->usual_outputs = TapeWriter::now->outputs.size(); }
 
-  /// Returns true if the value is the same for all inputs.
+  /// Returns true if the value does not depend on inputs.
   [[nodiscard]] bool is_constant() const { return step_ < 0; }
   friend double value_of(const TapeNumber& x) { return x.value_; }
 
