@@ -23,7 +23,7 @@ template <int N> double size_from(const Coefficients<N>& c, int k) {
   return sum;
 }
 
-// Returns the range of polynomial plus error for |u| ≤ 1; exact up to the quadratic term.
+// Returns the range of Σ c_k uᵏ ± rest for |u| ≤ 1, exact up to the quadratic term.
 template <int N> Interval range_of(const Coefficients<N>& c, double rest) {
   double low = c[0], high = c[0];
   if constexpr (N >= 2) {
@@ -40,7 +40,8 @@ template <int N> Interval range_of(const Coefficients<N>& c, double rest) {
   return {low - more, high + more};
 }
 
-// Intersects the range of the polynomial with the interval of values. If the interval alone is narrower, the polynomial is dropped.
+// Sets the range of e to that of its polynomial, intersected with `natural`, the range from interval arithmetic. If the error bound of the
+// polynomial exceeds half the width of the result, the polynomial is replaced by a constant.
 template <int N> Enclosure<N> settled(Enclosure<N> e, const Interval& natural) {
   if (natural.is_empty()) {
     e.range = interval::k_none;
@@ -74,7 +75,7 @@ template <int N> void multiply_into(const Enclosure<N>& a, const Enclosure<N>& b
   product.rest = cut + size_a * b.rest + a.rest * (size_b + b.rest) + (2.0 * N + 4.0) * k_ulp * size_a * size_b;
 }
 
-// Returns Σ series_k (a − c₀)^k; `left_out` is the truncation error of the series.
+// Returns Σ_k series_k (a − c₀)ᵏ, with c₀ the constant coefficient of a. `left_out` bounds the truncation error of the series.
 template <int N> Enclosure<N> composed(const Enclosure<N>& a, const Coefficients<N>& series, double left_out) {
   Enclosure<N> shifted = a;
   shifted.c[0] = 0.0;
@@ -90,7 +91,7 @@ template <int N> Enclosure<N> composed(const Enclosure<N>& a, const Coefficients
   return sum;
 }
 
-// Returns the largest deviation of polynomial and error from c₀.
+// Returns the largest possible |a − c₀|, with c₀ the constant coefficient of a.
 template <int N> double reach(const Enclosure<N>& a) { return size_from<N>(a.c, 1) + a.rest; }
 
 template <int N> Enclosure<N> without_polynomial(bool is_partial) {
@@ -106,7 +107,7 @@ double whole_power(double x, int n) {
   return value;
 }
 
-// Binomial series of (c₀ + D)^p for c₀ > 0.
+// Returns a^p by the binomial series of (c₀ + D)^p, for a constant coefficient c₀ > 0.
 template <int N> Enclosure<N> positive_power(const Enclosure<N>& a, double p) {
   const double c0 = a.c[0], q = reach<N>(a) / c0;
   const double growth = q * std::max(1.0, (std::abs(p) + N + 1) / (N + 2));
@@ -132,7 +133,7 @@ template <int N> Enclosure<N> inverse(const Enclosure<N>& a) {
   return a.c[0] < 0.0 ? negated<N>(positive_power<N>(negated<N>(a), -1.0)) : positive_power<N>(a, -1.0);
 }
 
-// Returns the sine of a, or of a + π/2.
+// Returns sin a, or cos a if `is_cosine`, by the Taylor series about c₀.
 template <int N> Enclosure<N> swung(const Enclosure<N>& a, bool is_cosine) {
   const double d = reach<N>(a);
   if (!a.has_polynomial() || !(d <= k_widest_angle)) return without_polynomial<N>(a.is_partial);
@@ -149,8 +150,8 @@ template <int N> Enclosure<N> swung(const Enclosure<N>& a, bool is_cosine) {
   return composed<N>(a, series, left_out);
 }
 
-// The Taylor coefficients of the arctangent about c₀ are cosᵏφ sin(k(φ + π/2))/k with φ = atan c₀. The truncated ones are at most cosᵏ/k
-// for the smallest |angle| in the range.
+// Returns atan a by the Taylor series about c₀, whose coefficients are cosᵏφ sin(k(φ + π/2))/k with φ = atan c₀. The truncated ones are at
+// most cosᵏψ/k, where ψ is the smallest |angle| in the range.
 template <int N> Enclosure<N> arctangent(const Enclosure<N>& a) {
   const double nearest = a.range.holds(0.0) ? 0.0 : std::min(std::abs(a.range.low), std::abs(a.range.high));
   const double q = reach<N>(a) / std::sqrt(1.0 + nearest * nearest);
@@ -166,7 +167,8 @@ template <int N> Enclosure<N> arctangent(const Enclosure<N>& a) {
   return composed<N>(a, series, whole_power(q, N + 1) / (N + 1) + 64.0 * k_ulp * q);
 }
 
-// Encloses |x| by the chord between the ends of its range with the error of the chord, which preserves the correlation with x.
+// Returns |a|. If a changes sign, |a| is enclosed by the chord between the ends of its range and the largest deviation from the chord.
+// Unlike an interval, this keeps the correlation with a.
 template <int N> Enclosure<N> folded(const Enclosure<N>& a, const Interval& natural) {
   if (a.range.low >= 0.0) return settled<N>(a, natural);
   if (a.range.high <= 0.0) return settled<N>(negated<N>(a), natural);
@@ -301,7 +303,7 @@ template <int N> Enclosure<N> EnclosingNumbers<N>::hypot(const Value& a, const V
   return settled<N>(e, interval::hypot(a.range, b.range));
 }
 
-// (a + b ± |a − b|)/2, intersected with the maximum of the intervals.
+// Returns max(a, b) = (a + b + |a − b|)/2, intersected with the maximum of the intervals.
 template <int N> Enclosure<N> EnclosingNumbers<N>::max(const Value& a, const Value& b) {
   if (is_none(a) || is_none(b)) return none<N>();
   const bool is_partial = a.is_partial || b.is_partial;
@@ -323,7 +325,7 @@ template <int N> Enclosure<N> EnclosingNumbers<N>::cos(const Value& a) {
 template <int N> Enclosure<N> EnclosingNumbers<N>::tan(const Value& a) {
   if (is_none(a)) return a;
   Value e = divide(sin(a), cos(a));
-  e.is_partial = a.is_partial; // no double has the cosine zero
+  e.is_partial = a.is_partial; // no floating-point argument has a cosine of exactly zero
   return settled<N>(e, interval::tan(a.range));
 }
 
@@ -437,7 +439,7 @@ template <int N> Enclosure<N> EnclosingNumbers<N>::choice(const Value& condition
   return Value::of_range(interval::hull(yes.range, no.range), is_partial);
 }
 
-// An infinite result has no value; a finite one may be arbitrarily large.
+// Marks where a formula has no finite value: an infinite result has none; a range without bound may include infinite values.
 template <int N> Enclosure<N> EnclosingNumbers<N>::finite(const Value& a) {
   if (is_none(a)) return a;
   if (a.range.low == a.range.high && std::isinf(a.range.low)) return none<N>();

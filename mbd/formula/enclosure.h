@@ -16,11 +16,11 @@
 
 namespace steplap {
 
-/// Enclosure with a polynomial of the given degree.
+/// Enclosure of f(u), |u| ≤ 1: f(u) lies in `range`, and within `rest` of the polynomial Σ c_k uᵏ.
 template <int Degree> struct Enclosure {
   Interval range;
   std::array<double, Degree + 1> c{}; ///< coefficients of 1, u, u² …
-  double rest = 0.0;                  ///< error bound of the polynomial; infinite if there is none
+  double rest = 0.0;                  ///< bound of |f − polynomial|; infinite if there is no polynomial
   bool is_partial = false;            ///< the formula may have no value somewhere in the interval
 
   [[nodiscard]] bool has_polynomial() const { return std::isfinite(rest); }
@@ -35,10 +35,10 @@ template <int Degree> struct Enclosure {
   [[nodiscard]] static Enclosure of_polynomial(const std::array<double, Degree + 1>& c, double rest);
 };
 
-/// Returns the u in |u| ≤ 1 at which the polynomial up to its quadratic term, times `sign`, is largest.
+/// Returns the u, |u| ≤ 1, at which `sign` (1 or −1) times the polynomial, truncated after u², is largest.
 template <int Degree> [[nodiscard]] double place_of_largest(const Enclosure<Degree>& e, double sign);
 
-/// Arithmetic for evaluate() (formula_tree.h).
+/// Operations on enclosures, for evaluate() (formula_tree.h).
 template <int Degree> struct EnclosingNumbers {
   using Value = Enclosure<Degree>;
   static Value number(double a) { return Value::of_number(a); }

@@ -26,10 +26,11 @@ public:
   /// Parses the text. Throws ModelError at `where` if it is not a formula; `subject` begins the messages.
   Formula(const std::string& text, const std::string& subject, const Location& where);
 
-  /// Returns the names of channels, each once, in the order of first appearance. These are the operands.
+  /// Returns the names of the channels in the formula, its operands, each once, in the order of first appearance.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] const FormulaTree& tree() const { return tree_; }
-  /// Returns the dimension of the result for the units of names(). Throws ModelError if they are inconsistent.
+  /// Returns the dimension of the result if operand i has the unit units[i], in the order of names(). Throws ModelError if the units do not
+  /// fit together.
   [[nodiscard]] UnitDimension dimension(const std::vector<std::string>& units) const;
 
 private:

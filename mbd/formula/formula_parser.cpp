@@ -16,7 +16,7 @@ struct Function {
   std::string_view name;
   FormulaOp op;
   int arguments;
-  bool takes_more = false; ///< left-associative
+  bool takes_more = false; ///< true: accepts more arguments than two, combined from the left
 };
 
 constexpr Function k_functions[] = {{"abs", FormulaOp::abs, 1},       {"sqrt", FormulaOp::sqrt, 1},     {"hypot", FormulaOp::hypot, 2},
@@ -29,7 +29,7 @@ constexpr int k_deepest = 64; // largest nesting of brackets and signs; each lev
 
 } // namespace
 
-// Recursive-descent parser. Each production returns the node that it has made.
+// Recursive-descent parser. The function for each grammar rule returns the index of the node that it added.
 class FormulaParser {
 public:
   explicit FormulaParser(Formula& made) : made_(made), text_(made.text_) {}
@@ -46,7 +46,7 @@ private:
     throw ModelError(made_.where_, made_.subject_ + ": the expression '" + text_ + "' " + message);
   }
 
-  // Returns the present character with all bytes of its UTF-8 code.
+  // Returns the character at the current position with all bytes of its UTF-8 code.
   [[nodiscard]] std::string character() const {
     std::size_t end = at_ + 1;
     while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0U) == 0x80U) ++end;

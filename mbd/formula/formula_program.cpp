@@ -13,9 +13,9 @@ bool is_switch(FormulaOp op) {
   return op == FormulaOp::abs || op == FormulaOp::min || op == FormulaOp::max || op == FormulaOp::less || op == FormulaOp::less_or_equal;
 }
 
-// Restricts the use of time in formulas. Step control cannot know how fast a formula changes with time, so a narrow pulse, or one of many,
-// could be stepped over. It does know this for linear functions of time and for signals. Time may therefore be added, compared, and
-// multiplied by terms that do not contain it.
+// Refuses formulas that depend on time in other ways than by sums, comparisons, and products with terms without time. Step control cannot
+// bound the rate of change of such formulas, so that a run could step over a narrow pulse. It can for linear functions of time and for
+// signals.
 void require_plain_time(const std::vector<FormulaProgram::Step>& steps) {
   std::vector<char> has_time;
   for (const FormulaProgram::Step& step : steps) {
@@ -136,7 +136,7 @@ int FormulaProgram::add_number(double number) {
   return made;
 }
 
-// Returns true if the node is a truth value, made of comparisons only.
+// Returns true if the value of the node is always 0 or 1, because it consists of comparisons only.
 bool FormulaProgram::is_boolean(int node) const {
   const Step& step = steps_[static_cast<std::size_t>(node)];
   switch (step.op) {
@@ -157,7 +157,7 @@ void FormulaProgram::require_condition(int node) const {
         "has a condition that compares nothing: an event is where a comparison changes, so write x > 0 instead of x");
 }
 
-// Integer powers are expanded into products, which all number types have.
+// Adds base^exponent. Integer exponents up to k_largest_product are expanded into products, which all number types have.
 int FormulaProgram::add_power(int base, int exponent) {
   const Step& known = steps_[static_cast<std::size_t>(exponent)];
   const bool is_number = known.op == FormulaOp::number ||
@@ -199,7 +199,8 @@ void FormulaProgram::add_node(const FormulaNode& node, std::vector<int>& place) 
   place.push_back(add(node.op, of(0), of(1), of(2)));
 }
 
-// Returns the innermost guard around `guard`, itself included, all of whose conditions precede the step; −1: none.
+// Returns the first of `guard` and its enclosing guards such that its condition, and those of all guards around it, are evaluated before
+// `step`; −1 if there is none.
 int FormulaProgram::known_before(int guard, int step) const {
   int known = std::max(guard, -1);
   for (int g = known; g >= 0; g = guards_[static_cast<std::size_t>(g)].outer)
@@ -207,7 +208,8 @@ int FormulaProgram::known_before(int guard, int step) const {
   return known;
 }
 
-// From the last step backwards: a step used only in one branch of a choice is evaluated only if that branch is selected.
+// Finds the steps that are used in one branch of a choice only, from the last step backwards. Such a step is evaluated only if that branch
+// is selected.
 void FormulaProgram::set_guards() {
   constexpr int k_unused = -2;
   std::vector<int> guard(steps_.size(), k_unused);

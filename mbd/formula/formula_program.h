@@ -28,13 +28,13 @@
 
 namespace steplap {
 
-/// Bits of the switches of one or several formulas.
+/// Bits of all switches of one or several formulas; bit s belongs to switch s.
 using SwitchBits = std::uint32_t;
 inline constexpr int k_most_switches = 32;
 
 namespace formula_math {
 
-/// Returns true if a negative number has no power with this exponent.
+/// Returns true if the exponent is not an integer, so that powers of negative numbers do not exist.
 inline bool is_fraction(double exponent) { return exponent != std::floor(exponent); }
 inline double power(double a, double b) { return a < 0.0 && is_fraction(b) ? 0.0 : portable::pow(a, b); }
 inline double exponential(double a) { return portable::pow(std::numbers::e, a); }
@@ -68,7 +68,7 @@ template <int N> void turn(const Dual<N>& a, Dual<N>& sine, Dual<N>& cosine) {
   cosine = cos(a);
 }
 
-// Functions that a tape has no operation for are recorded as calls (mbd/tape/traced.h).
+// The functions below have no operation on a tape. They are recorded as calls (mbd/tape/traced.h).
 template <class S> S power(const S& a, const S& b) {
   const S arguments[] = {a, b};
   S value;
@@ -88,7 +88,7 @@ template <class S> void turn(const S& a, S& sine, S& cosine) { find_sin_cos(a, s
 
 } // namespace formula_math
 
-/// A formula compiled to a list of steps.
+/// A formula compiled to a list of steps (operations).
 class FormulaProgram {
 public:
   struct Step {
@@ -96,20 +96,21 @@ public:
     std::array<int, 3> of{-1, -1, -1}; ///< steps that are its operands
     double number = 0.0;
     int index = -1; ///< index of the operand or of the switch
-    int guard = -1; ///< guard: the step is evaluated only if its condition is met; −1: always
+    int guard = -1; ///< condition under which the step is evaluated, an index of a Guard; −1: always
   };
   struct Guard {
     int condition = -1; ///< index of a step
     bool is_wanted = true;
     int outer = -1; ///< enclosing guard, which must hold as well; −1: none
   };
-  /// Bits of the switches: all given, or some given and the others to be determined.
+  /// Bits of the switches. Bits not in `are_given` are determined during evaluation.
   struct Bits {
     SwitchBits values = 0;
     SwitchBits are_given = ~SwitchBits{0};
   };
 
-  /// Compiles the formula. Throws std::invalid_argument with a few words that continue a sentence beginning "the formula".
+  /// Compiles the formula. Throws std::invalid_argument for formulas that cannot be used in equations of motion; the message continues a
+  /// sentence that begins with "the formula".
   explicit FormulaProgram(const FormulaTree& tree);
 
   [[nodiscard]] int size() const { return static_cast<int>(steps_.size()); }
@@ -121,21 +122,22 @@ public:
   /// Returns true if all pieces and all switch quantities are linear in operands and time.
   [[nodiscard]] bool is_linear() const;
   [[nodiscard]] bool uses_time() const { return uses_time_; }
-  /// Returns true if the value may rise and fall again while the operands change arbitrarily little: with several switches, with switches
-  /// of nonlinear quantities, with exponentials, powers and quotients of variables.
+  /// Returns true if the value may rise and fall again during an arbitrarily small change of the operands. This is assumed for several
+  /// switches, switches of nonlinear quantities, exponentials, and powers and quotients of variables.
   [[nodiscard]] bool may_peak() const;
 
-  /// Returns the value for given bits. `values`: scratch for size() numbers. `quantity`: receives the quantity of each switch; those of
-  /// switches that are not evaluated are unchanged; may be null.
+  /// Returns the value for given switch bits. `values`: scratch for size() numbers. `quantity`, if not null, receives the quantity of each
+  /// switch; entries of switches that are not evaluated stay unchanged.
   template <class S> S evaluate(const S* operands, const S& t, SwitchBits bits, S* values, S* quantity) const {
     Bits given{bits};
     return run<false>(operands, t, given, values, quantity);
   }
-  /// As evaluate(), with all bits determined that are not given; `bits.values` then contains all bits in use.
+  /// Returns the value like evaluate(), and determines the bits that are not given from the operands. `bits.values` then contains the bits
+  /// that were used.
   double find_bits(const double* operands, double t, Bits& bits, double* values) const {
     return run<true>(operands, t, bits, values, static_cast<double*>(nullptr));
   }
-  /// Returns the switches that are evaluated with these bits.
+  /// Returns the set of switches that are evaluated for these bits; those in unselected branches of `? :` are not.
   [[nodiscard]] SwitchBits counting(SwitchBits bits) const;
 
 private:
@@ -154,7 +156,7 @@ private:
     }
     return true;
   }
-  // Returns the bit of switch `s`, which has the quantity `q`. `is_strict`: when determined, it is set only for q > 0, not for q = 0.
+  // Returns the bit of switch `s` with quantity `q`. If the bit is not given, it is q > 0 for `is_strict`, else q ≥ 0.
   template <bool Finds, class S> static bool bit_of(int s, const S& q, Bits& bits, S* quantity, bool is_strict = false) {
     const SwitchBits mask = SwitchBits{1} << static_cast<unsigned>(s);
     if constexpr (Finds) {

@@ -56,8 +56,8 @@ struct FormulaNode {
 
 using FormulaTree = std::vector<FormulaNode>;
 
-/// Computes the values of all nodes in `values` and returns that of the formula, the last one. `Numbers` defines the number type, with a
-/// static function for each operation.
+/// Computes the values of all nodes in `values`, and returns that of the last one, which is the formula. The class `Numbers` defines the
+/// number type and a static function for each operation.
 template <class Numbers>
 const typename Numbers::Value& evaluate(const FormulaTree& tree, const typename Numbers::Value* operands, const typename Numbers::Value& t,
                                         typename Numbers::Value* values) {

@@ -6,8 +6,8 @@ namespace steplap {
 
 struct Formula::Typed {
   std::array<double, 3> powers{};
-  bool is_any = false;      ///< zero, which may be added to any dimension
-  bool is_constant = false; ///< known value
+  bool is_any = false;      ///< zero, which has no unit and may be added to anything
+  bool is_constant = false; ///< a number in the formula; `value` is set
   double value = 0.0;
 
   [[nodiscard]] bool is_number() const { return powers == std::array<double, 3>{}; }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
 
-// Returns the truth value as a number; NaN if an operand is NaN.
+// Returns 1 for true and 0 for false; NaN if an operand of the comparison is NaN.
 double truth(bool is_true, double a, double b = 0.0) { return std::isnan(a) || std::isnan(b) ? k_none : is_true ? 1.0 : 0.0; }
 
 struct PlainNumbers {

@@ -27,7 +27,7 @@ Interval of_corners(double p, double q, double r, double s) { return widened(std
 double nearest(const Interval& a) { return a.holds(0.0) ? 0.0 : std::min(std::abs(a.low), std::abs(a.high)); }
 double farthest(const Interval& a) { return std::max(std::abs(a.low), std::abs(a.high)); }
 
-// Returns true if the interval contains `at` plus a multiple of the period, with a tolerance for rounding.
+// Returns true if the interval contains a point `at` + k `period`, k an integer, with a tolerance for rounding.
 bool holds_periodic(const Interval& a, double at, double period) {
   const double slack = 1e-15 * (period + farthest(a));
   return std::floor((a.high + slack - at) / period) >= std::ceil((a.low - slack - at) / period);
@@ -43,7 +43,7 @@ Interval reciprocal(const Interval& b, bool& is_partial) {
   return k_all;
 }
 
-// Power of nonnegative numbers, or with a positive integer exponent.
+// Returns the range of a to the power `exponent`, for a ≥ 0 or a positive integer exponent.
 Interval positive_power(const Interval& a, double exponent) {
   const bool is_even = std::fmod(exponent, 2.0) == 0.0;
   if (is_even || a.low >= 0.0) {
@@ -69,7 +69,7 @@ Interval within_one(const Interval& a, bool& is_partial) {
 
 } // namespace
 
-// The difference of infinities can be anything.
+// Rounds outward. An end that is NaN, such as the difference of infinities, becomes infinite.
 Interval widened(double low, double high) {
   return {std::isnan(low) ? k_all.low : low - outward(low), std::isnan(high) ? k_all.high : high + outward(high)};
 }
@@ -96,7 +96,7 @@ Interval power(const Interval& a, double exponent, bool& is_partial) {
   return exponent > 0.0 ? size : reciprocal(size, is_partial);
 }
 
-// For a positive base it is monotonic in both arguments.
+// Returns the range of a^b. For a positive base the power is monotonic in both arguments, so its extremes are at corners.
 Interval power(const Interval& a, const Interval& b, bool& is_partial) {
   if (b.low == b.high) return power(a, b.low, is_partial);
   if (!(a.low > 0.0)) {
@@ -144,7 +144,8 @@ Interval acos(const Interval& a, bool& is_partial) {
 
 Interval atan(const Interval& a) { return widened(portable::atan2(a.low, 1.0), portable::atan2(a.high, 1.0)); }
 
-// If the interval does not touch the half-axis on which the angle jumps, the extremes are at corners.
+// Returns the range of the angle. It jumps across the negative x axis; if the rectangle does not touch this half-axis, the extremes are at
+// corners.
 Interval atan2(const Interval& y, const Interval& x) {
   if (y.holds(0.0) && x.low <= 0.0) return {-k_pi, std::nextafter(k_pi, 4.0)};
   return of_corners(portable::atan2(y.low, x.low), portable::atan2(y.low, x.high), portable::atan2(y.high, x.low),

@@ -33,7 +33,7 @@ std::string with_operands(const std::string& text, const std::function<std::stri
     result += renamed(formula->names()[static_cast<std::size_t>(node->operand)]);
     done = node->end;
     while (done > node->begin && (text[done - 1] == ' ' || text[done - 1] == '\t'))
-      --done; // the range of a node extends to the beginning of the next
+      --done; // a node's range of text extends to the beginning of the next token
   }
   return result.append(text, done);
 }

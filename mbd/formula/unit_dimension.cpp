@@ -35,7 +35,7 @@ constexpr Symbol k_symbols[] = {
     {"min", 60.0, {0, 0, 1}, false},
     {"h", 3600.0, {0, 0, 1}, false},
     {"gravity", 9.80665, {0, 1, -2}, false},
-    // Electric and temperature units are dimensionless here, like radians; volts times amperes still give watts.
+    // Electric units and the kelvin are dimensionless here, like radians. Volt times ampere must still give watts.
     {"A", 1.0, {0, 0, 0}, true},
     {"K", 1.0, {0, 0, 0}, true},
     {"C", 1.0, {0, 0, 1}, true},

@@ -21,10 +21,10 @@ struct UnitDimension {
   [[nodiscard]] bool is_number() const { return powers == std::array<double, 3>{}; }
 };
 
-/// Returns the dimension, or nothing for an unknown unit.
+/// Returns the dimension of a unit; nothing if the unit is unknown.
 [[nodiscard]] std::optional<UnitDimension> dimension_of(std::string_view unit);
 
-/// Returns the SI unit with these exponents as channels write it; "" for a number.
+/// Returns the SI unit with exponents `powers` of kg, m, s in the form used for channels; "" for a dimensionless number.
 [[nodiscard]] std::string unit_text(const std::array<double, 3>& powers);
 
 } // namespace steplap
