@@ -26,10 +26,10 @@ struct Action : TableObject {
 /// Returns the action if the element is one, otherwise nullptr.
 [[nodiscard]] const Action* as_action(const Element& element);
 
-/// Operation of one step. A parsed step, such as "release hook", "set brake.holds = 20 N m", "arm alarm", "stop".
+/// Operation of one step of an action.
 enum class ActionVerb { release, hold, set, arm, disarm, stop };
 
-/// A step as it is written: "release hook", "set brake.holds = 20 N m", "arm alarm", "stop".
+/// One parsed step. Examples: "release hook", "set brake.holds = 20 N m", "arm alarm", "stop".
 struct ActionStepText {
   ActionVerb verb = ActionVerb::stop; ///< what it does
   std::string name;                   ///< element, or for arm and disarm the action; "" for stop
@@ -53,7 +53,7 @@ struct EventText {
 /// the value is not a list.
 [[nodiscard]] std::optional<std::vector<std::string>> items_of_list(const std::string& value);
 
-/// Returns true if the value of a set step is a name, for example of a signal, and not a number.
+/// Returns true if the value of a `set` step is a name, for example of a signal, and not a number.
 [[nodiscard]] bool is_name_in_step(const std::string& value);
 
 } // namespace steplap

@@ -1,11 +1,11 @@
-// Tables that are expanded to bodies. For example, one elastic beam of a file becomes many rigid segments of the scene.
+// Tables that are expanded to bodies. For example, one elastic beam of a model file becomes many rigid segments.
 #pragma once
 
 #include "mbd/model/model.h"
 
 namespace steplap {
 
-/// Base class of such tables. Other entries of the model may refer to the bodies, markers and elements that it adds.
+/// Base class of tables that add bodies. Other entries of the model may refer to the bodies, markers and elements that they add.
 struct BodyBuilder : TableObject {
   /// Adds bodies, markers and elements to the model and changes nothing else. Called during completion, before joints determine the
   /// positions of bodies, since these joints may be attached to the added bodies. Precondition: fields are within their ranges. Throws

@@ -49,7 +49,7 @@ double frequency_at(const Chirp& chirp, double tau) {
   return 2.0 * k_pi * (chirp.from + (chirp.to - chirp.from) * share);
 }
 
-// Power series of δ about a point with angular frequency ω, as coefficients of (τ/length)ⁿ.
+// Returns the power series of δ about a point with angular frequency ω, as coefficients of (τ/length)ⁿ.
 Powers deviation(const Chirp& chirp, double omega, double length) {
   Powers d{};
   if (!is_exponential(chirp)) {
@@ -65,7 +65,7 @@ Powers deviation(const Chirp& chirp, double omega, double length) {
   return d;
 }
 
-// Returns a bound of the truncated terms for |τ| ≤ length, from the series of e^δ with absolute values of the coefficients of δ.
+// Returns a bound of the truncated terms of e^{iδ} for |τ| ≤ length, from the series of e^δ with absolute coefficients of δ.
 double left_out(const Powers& d) {
   Powers bound{};
   bound[0] = 1.0;
@@ -78,8 +78,8 @@ double left_out(const Powers& d) {
   return sum;
 }
 
-// Returns the length of the next piece, at most `remaining`. Tries lengths in decreasing order, beginning slightly above the length of the
-// previous piece.
+// Returns the length of the next piece, at most `remaining`. Lengths are tried in decreasing order, beginning slightly above `last`, the
+// length of the previous piece.
 double length_of(const Chirp& chirp, double omega, double remaining, double last) {
   constexpr double k_longer = 1.3, k_shorter = 0.95;
   double length = std::min(remaining, k_longer * last);
@@ -133,8 +133,8 @@ void check(const Chirp& chirp) {
          ", and must be less than 1e7; let it be shorter or narrower");
 }
 
-// The phase is accumulated over the pieces, with the lengths that result from rounded times, so that the value does not jump. Whole turns
-// are subtracted.
+// Builds the signal from pieces. Their starts are rounded times; the phase is accumulated over the resulting lengths, so that the value
+// does not jump. Whole turns are subtracted.
 Signal build_chirp(const SignalDefinition& definition) {
   const auto& chirp = static_cast<const Chirp&>(definition);
   check(chirp);

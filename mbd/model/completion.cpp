@@ -10,7 +10,8 @@ namespace steplap {
 
 namespace {
 
-// Adds markers at the centres of gravity of bodies that elements name instead of a marker.
+// For each element or table that names a body where a marker is needed, adds a marker with the body's name. Its position, the centre of
+// gravity, is set by place_at_centres().
 void add_body_markers(Model& model) {
   std::unordered_map<std::string, const Body*> bodies{{"ground", nullptr}};
   for (const Body& body : model.bodies) bodies.emplace(body.name, &body);
@@ -31,7 +32,7 @@ void add_body_markers(Model& model) {
   for (const TableEntry& entry : model.tables) add_for(entry.kind->fields, entry.table.get());
 }
 
-// Returns the markers without a position. They are placed at the centre of gravity of their body.
+// Returns the indices of the markers without a position, which are placed at the centre of gravity of their body.
 std::vector<std::size_t> unplaced_markers(const Model& model) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < model.markers.size(); ++i)
@@ -68,8 +69,8 @@ bool is_sound(const Model& model, std::size_t table, const ModelPlaces& places, 
   return problems.size() == before && (!places.is_table_usable || places.is_table_usable(table));
 }
 
-// Applies the tables that add bodies (`are_builders`), or all others. The former must be applied before any reference to a body is
-// resolved, the latter after all bodies have poses.
+// Applies the tables that add bodies (`are_builders`), or all others. Tables with bodies must be applied before references to bodies are
+// resolved, all others after the bodies have poses. Returns false if a table is invalid or a builder failed.
 bool apply_tables(Model& model, bool are_builders, const ModelPlaces& places, std::vector<Diagnostic>& problems) {
   bool is_every_one = true;
   KnownTables known;
@@ -92,7 +93,7 @@ bool apply_tables(Model& model, bool are_builders, const ModelPlaces& places, st
   return is_every_one;
 }
 
-// Fields of bodies given in the file, or set by code to a value that differs from the default.
+// Returns a function that tells whether a field of a body was given: in the file, or by code as a value that differs from the default.
 GivenBodyField given_in_model(const Model& model) {
   return [&model](std::size_t index, const std::string& name) -> std::optional<Location> {
     const Field* const field = Body::fields().find(name);

@@ -1,7 +1,7 @@
-// Completion of a model: computes the values that follow from other entries. These are poses of bodies that joints determine, markers for
-// references to bodies, and the elements and bodies that tables such as [[core]] stand for.
+// Completion of a model: adds what follows from other entries. These are poses of bodies that joints determine, markers for references to
+// bodies, and the elements and bodies that tables such as [[core]] define.
 //
-// Change values in the model as given and complete it again: a completed model does not follow later changes of its inputs.
+// To change values, change the model as given and complete it again: a completed model does not follow changes of its inputs.
 #pragma once
 
 #include "mbd/model/placement.h"
@@ -17,8 +17,8 @@ struct ModelPlaces {
   std::function<bool(std::size_t table)> is_table_usable; ///< returns false if the table could not be read; empty: all tables are usable
 };
 
-/// Completes the model in place, without validating it. Appends errors to `problems`. Returns true if all tables could be applied. Must be
-/// called at most once on a model.
+/// Completes the model in place, without validating it, and appends errors to `problems`. Returns true if all tables could be applied.
+/// Throws std::logic_error for a model that is completed already.
 bool complete(Model& model, const ModelPlaces& places, std::vector<Diagnostic>& problems);
 
 /// Returns a completed and validated copy of `given`. Throws ModelError with all errors found.

@@ -1,4 +1,4 @@
-// The elements and tables of a model that belong to one kind, by the struct of the kind.
+// Selects the elements and tables of a model that belong to one kind, by the struct of the kind.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -14,7 +14,7 @@ template <class T> [[nodiscard]] std::vector<const T*> elements_of(const Model& 
     if (const auto* const one = dynamic_cast<const T*>(entry.element.get())) found.push_back(one);
   return found;
 }
-/// The same, to change them.
+/// Returns the elements that are a T, for changes.
 template <class T> [[nodiscard]] std::vector<T*> elements_of(Model& model) {
   std::vector<T*> found;
   for (ElementEntry& entry : model.elements)
@@ -28,7 +28,7 @@ template <class T> [[nodiscard]] std::vector<const T*> tables_of(const Model& mo
     if (const auto* const one = dynamic_cast<const T*>(entry.table.get())) found.push_back(one);
   return found;
 }
-/// The same, to change them.
+/// Returns the tables that are a T, for changes.
 template <class T> [[nodiscard]] std::vector<T*> tables_of(Model& model) {
   std::vector<T*> found;
   for (TableEntry& entry : model.tables)

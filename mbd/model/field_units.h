@@ -12,7 +12,7 @@ namespace steplap {
 [[nodiscard]] bool hangs_on_others(const Field& field);
 /// Returns the unit of `field` for the values in `object`, whose fields `table` lists.
 [[nodiscard]] std::string unit_in(const FieldTable& table, const Field& field, const void* object);
-/// Returns the unit without reference to an object, for documents and messages: "N m or N".
+/// Returns the unit for any object, as shown in documents and messages: "N m or N".
 [[nodiscard]] std::string shown_unit(const Field& field);
 
 } // namespace steplap

@@ -52,7 +52,7 @@ struct Field {
   std::string unit2;                  ///< second unit of a list of points
   std::string doc;                    ///< description, one line
   bool is_required = false;           ///< must be given in a file
-  bool is_limit = false;              ///< limit used only to judge a run; does not affect the motion
+  bool is_limit = false;              ///< limit used only to judge a run, without effect on the motion
   double minimum = -std::numeric_limits<double>::infinity(); ///< smallest allowed value of each number, in `unit`
   double maximum = std::numeric_limits<double>::infinity();  ///< largest allowed value of each number, in `unit`
   bool is_minimum_excluded = false;                          ///< values must be larger than `minimum`, not equal
@@ -90,7 +90,7 @@ public:
   FieldBuilder& at_least(double lowest) { return assign(field_->minimum, lowest); }
   /// Requires values ≤ `largest`.
   FieldBuilder& at_most(double largest) { return assign(field_->maximum, largest); }
-  /// Excludes the minimum itself.
+  /// Makes the field a choice of these texts.
   FieldBuilder& excluding_minimum() { return assign(field_->is_minimum_excluded, true); }
   /// Makes it a choice of these texts.
   FieldBuilder& one_of(std::vector<std::string> choices) {

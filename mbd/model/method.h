@@ -1,5 +1,5 @@
-// Properties of the integration methods that models and judgements need. The methods are listed in mbd/integrators/methods.cpp; each is a
-// file pair and a line there.
+// Properties of the integration methods that models and assessments need. Each method is a file pair in mbd/integrators and a line in
+// mbd/integrators/methods.cpp.
 #pragma once
 
 #include <memory>
@@ -25,7 +25,7 @@ struct Method {
 
 /// Returns all methods, in the order of mbd/integrators/methods.cpp.
 [[nodiscard]] const std::vector<Method>& methods();
-/// Returns their names, in the same order.
+/// Returns the names of all methods, in the same order.
 [[nodiscard]] std::vector<std::string> method_names();
 /// Returns the method with this name. Throws std::invalid_argument if there is none.
 [[nodiscard]] const Method& method(const std::string& name);

@@ -88,7 +88,7 @@ struct ElementKind {
   std::string doc;   ///< a few sentences: what it models, sign convention
   FieldTable fields; ///< fields of its struct, in addition to common_fields()
   /// TOML text with an element of the kind and everything it needs except two bodies 'a' and 'b'. It is used to find the channels of the
-  /// kind by making an element (kind_channels.h). "": giving the required fields is enough.
+  /// kind by making an element (kind_channels.h). "": an element with only the required fields is sufficient.
   std::string example = {};
   int stage = 0;                                                      ///< 0, or 1 for kinds that refer to other elements and are compiled
                                                                       ///< after these
@@ -96,18 +96,18 @@ struct ElementKind {
   std::shared_ptr<Element> (*copy)(const Element& element) = nullptr; ///< returns a copy; set by holds()
   /// Adds the element to the system. Errors are reported to the builder.
   void (*compile)(const Element& element, SystemBuilder& builder) = nullptr;
-  /// Judges an element after a run (mbd/trust/element_judgement.h); null if the kind has no built-in limits.
+  /// Judges an element by its built-in limits after a run (mbd/trust/element_judgement.h); null if the kind has none.
   ElementJudgement (*judge)(const Element& element, const Model& model, const RunResult& result) = nullptr;
-  /// For kinds that exert a prescribed force: returns true if the element exerts one in addition to its signals. Null for kinds whose forces
-  /// depend on the motion alone.
+  /// Returns true if the element exerts a constant prescribed force in addition to its signals. Null for kinds whose forces depend on the
+  /// motion alone.
   bool (*has_constant_load)(const Element& element) = nullptr;
-  /// For kinds whose dry friction can state its origin: returns it. Null for kinds without dry friction, and for tyres and sheets, which have
-  /// ranges of their own.
+  /// Returns the largest friction coefficient of the element and its source. Null for kinds without dry friction, and for tyres and sheets,
+  /// whose coefficients have fixed ranges.
   GivenFriction (*friction)(const Element& element) = nullptr;
-  /// For kinds with a contact: returns the description of the contact for other parts of the program
-  /// (mbd/system/contact_description.h). Null otherwise.
+  /// Returns the description of the element's contact, for plots and checks (mbd/system/contact_description.h). Null for kinds without a
+  /// contact.
   ContactDescription (*contact)(const Element& element, const Model& model) = nullptr;
-  /// True for ropes: where the element's gap opens it goes slack, and where it closes it becomes taut.
+  /// True for ropes: reports say "goes slack" instead of "opens", and "becomes taut" instead of "closes".
   bool goes_slack = false;
   /// Returns the channels whose extremes `judge` uses; their errors decide whether its result can be trusted.
   std::vector<std::string> (*channels_of_trust)(const Element& element) = nullptr;
@@ -119,7 +119,7 @@ struct ElementKind {
   }
 };
 
-/// Returns a copy of an object of this kind. Throws std::logic_error if the kind has not called holds().
+/// Returns a copy of an object of this kind. Throws std::logic_error if the kind has not declared its struct by holds().
 template <class Kind, class Object> std::shared_ptr<Object> copied(const Kind& kind, const Object& object) {
   if (!kind.copy) throw std::logic_error("the kind '" + kind.name + "' does not say what it holds: call holds<T>()");
   return kind.copy(object);
@@ -153,7 +153,7 @@ struct SignalEntry {
   ~SignalEntry() = default;
 };
 
-/// Largest number of steps. Runs that need more, which would take days, are refused or aborted.
+/// Largest number of steps of a run. A run that needs more would take days; it is refused or aborted.
 inline constexpr double k_most_steps = 1e10;
 
 /// Table [simulation]: duration, method, initial state.
@@ -186,7 +186,8 @@ struct OutputSettings {
   [[nodiscard]] static const FieldTable& fields();
 };
 
-/// Base class of array tables that are not defined in mbd/model itself, such as [[plot]] or [[core]]; keeps the location of each field.
+/// Base class of array tables that are not defined in mbd/model itself, such as [[plot]] or [[core]]; it keeps the location of each given
+/// field.
 struct TableObject : Element {
   std::map<std::string, Location> places; ///< locations of the fields that were given
 
@@ -215,7 +216,7 @@ struct Criterion : TableObject {
   /// Limits in the unit of the channels, set once this unit is known; `within` limits the absolute value.
   std::optional<double> at_least, at_most, within;
   std::string element, event;          ///< patterns of an element and of an event that must not occur
-  std::string consequence = "inspect"; ///< consequence of failing: "inspect" or "reject"
+  std::string consequence = "inspect"; ///< consequence of a violation: "inspect" or "reject"
   std::string reason;                  ///< justification, such as a document
 };
 
@@ -240,7 +241,8 @@ struct TableKind {
   std::shared_ptr<Element> (*copy)(const Element& table) = nullptr; ///< returns a copy; set by holds()
   void (*apply)(const Element& table, Model& model) =
       nullptr; ///< adds elements, missing data of bodies, or channels and criteria, and changes nothing else; throws ModelError
-  /// True if apply() reads masses and inertias of bodies, or numbers of elements. If not, these may be changed after completion.
+  /// True if apply() reads masses and inertias of bodies (first member), or numbers of elements (second). If false, these may be changed
+  /// after completion without effect on the entries that apply() added.
   bool reads_masses = true, reads_elements = true;
 
   /// Declares T as the struct of its tables.
@@ -284,7 +286,7 @@ struct Model {
   std::vector<DefinedChannel> channels;          ///< [[channel]]
   std::vector<Plot> plots;                       ///< [[plot]]
   std::vector<Criterion> criteria;               ///< [[acceptance]]
-  std::vector<TableEntry> tables;                ///< tables such as [[core]], as given; complete() adds the entries that they stand for
+  std::vector<TableEntry> tables;                ///< tables such as [[core]], as given; complete() adds the entries that they define
   Parameters parameters;                         ///< [parameters], and the fields whose values are formulas of parameters
   std::vector<std::string> files_without_format; ///< files of the model without `format = 1`
   std::vector<RenamedKey> renamed_keys;          ///< keys given under earlier names
@@ -294,7 +296,7 @@ struct Model {
   [[nodiscard]] const Body* find_body(const std::string& name) const;
 };
 
-/// Kinds that a model file may use. mbd itself refers to no kind by name.
+/// Kinds that a model file may use. The kernel mbd refers to no kind by name.
 struct Catalogue {
   std::vector<const ElementKind*> elements; ///< kinds of elements, unique names
   std::vector<const SignalKind*> signals;   ///< kinds of signals, unique names

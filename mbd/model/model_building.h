@@ -8,8 +8,8 @@
 
 namespace steplap {
 
-/// Adds an element with the default values of its kind and returns a reference to it, valid while the entry is in the model. `Held` is the
-/// struct of the kind, declared in the same header (SpringDamper for spring_damper_kind()); throws std::bad_cast for another type.
+/// Adds an element with the default values of its kind. Returns a reference that is valid while the entry is in the model. `Held` is the
+/// struct of the kind, such as SpringDamper for spring_damper_kind(); another type throws std::bad_cast.
 template <class Held> Held& add_element(Model& model, const ElementKind& kind, std::string name) {
   auto element = kind.create();
   Held& held = dynamic_cast<Held&>(*element);

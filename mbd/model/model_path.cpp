@@ -16,7 +16,7 @@ namespace {
 
 [[noreturn]] void complain(const std::string& path, const std::string& message) { throw ModelError(Location{path, 0, 0}, message); }
 
-// Object and field that a path refers to, possibly an item of the field.
+// Object and field to which a path refers, possibly one item of the field.
 struct Target {
   const void* object = nullptr;
   const Field* field = nullptr;
@@ -25,7 +25,7 @@ struct Target {
   std::vector<std::size_t> items; ///< one or two indices into the value of the field
 };
 
-// An entry of one of the arrays of the model.
+// A named entry of one of the model's arrays, which a path may refer to.
 struct Candidate {
   const std::string* name;
   const FieldTable* fields;
@@ -64,7 +64,7 @@ public:
   }
 
 private:
-  // Returns the part of the path before the next point.
+  // Removes the part of the path before the next point and returns it.
   std::string take() {
     const std::size_t point = rest_.find('.');
     std::string segment(rest_.substr(0, point));
@@ -110,7 +110,7 @@ private:
   std::string_view rest_;
 };
 
-// Returns the component with these indices, null if it does not exist.
+// Returns the component of `value` with these indices; null if it does not exist.
 double* component_of(FieldValue& value, const std::vector<std::size_t>& items) {
   const auto of_point = [](Vec2& p, std::size_t i) { return i < 2 ? &p[static_cast<Eigen::Index>(i)] : nullptr; };
   if (auto* p = std::get_if<Vec2>(&value); p && items.size() == 1) return of_point(*p, items[0]);
@@ -139,7 +139,7 @@ FieldValue fitted(const std::string& path, const Target& target, FieldValue valu
   return value;
 }
 
-// Returns the index of the alternative of FieldValue for a field of this type.
+// Returns the index in the variant FieldValue of the C++ type for this field type.
 std::size_t index_of(FieldType type) {
   switch (type) {
   case FieldType::number: return FieldValue(0.0).index();
@@ -169,7 +169,7 @@ std::optional<std::size_t> parameter_at(const Model& model, const std::string& p
   complain(path, "there is no parameter '" + name + "'" + did_you_mean(name, known));
 }
 
-// Returns the current value of the formula in the form required by its field; limits of criteria are texts with a unit.
+// Returns the present value of the formula in the form that its field requires. Limits of criteria are texts with a unit.
 FieldValue value_for_field(const Model& model, const ParameterUse& use) {
   const double value = use.formula.value(model.parameters.values);
   if (!std::isfinite(value)) complain(use.path, "'" + use.text + "' has no finite value");

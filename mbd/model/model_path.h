@@ -13,9 +13,10 @@
 
 namespace steplap {
 
-/// Sets a field of a model as given (completion.h), or one of its components, which must be a number; integers accept whole numbers. For a
-/// parameter, which must not itself be a formula, all fields that depend on it are set as well. References to names are checked later, by
-/// completed(). Throws ModelError if the path does not exist or the value has the wrong type or is outside the field's range.
+/// Sets a field of a model that is not completed (completion.h), or one component of it, which must be a number; integers accept whole
+/// numbers. Setting a parameter also sets all fields that depend on it; a parameter given as a formula cannot be set. References to names
+/// are checked later, by completed(). Throws ModelError if the path does not exist, or if the value has the wrong type or is outside the
+/// field's range.
 void set_value(Model& model, const std::string& path, const FieldValue& value);
 
 /// Returns the value of the field, or a number for a component; text "" for an optional field that is not given. Throws ModelError if the
@@ -25,7 +26,7 @@ void set_value(Model& model, const std::string& path, const FieldValue& value);
 /// Returns the value as a number. Throws ModelError if it is not a number.
 [[nodiscard]] double number_of(const Model& model, const std::string& path);
 
-/// Returns the unit of this number, "*" if any unit is accepted. Throws ModelError if the value is not a number.
+/// Returns the unit of number_of(); "*" if the field accepts any unit. Throws ModelError if the value is not a number.
 [[nodiscard]] std::string unit_of(const Model& model, const std::string& path);
 
 } // namespace steplap

@@ -49,17 +49,17 @@ struct ParameterUse {
   std::string unit;         ///< SI unit of the result
   ParameterFormula formula; ///< formula with result in SI
   Location where;           ///< in the model's file
-  bool can_be_set = true;   ///< false if the target has no path of its own, such as a point of a ring
+  bool can_be_set = true;   ///< false if no path leads to the target, such as a point of a ring
 };
 
 /// All parameters of a model with their values, and the fields that use them.
 struct Parameters {
   std::vector<Parameter> entries; ///< in the order of the file
   std::vector<double> values;     ///< values of the entries, SI
-  std::vector<std::size_t> order; ///< indices of the entries that are formulas, in an order in which each follows those it depends on
+  std::vector<std::size_t> order; ///< indices of the entries that are formulas; each comes after those on which it depends
   std::vector<ParameterUse> uses; ///< fields that use parameters, in the order of the file
 
-  /// Returns the index of the parameter, or nothing.
+  /// Returns the index of the parameter in `entries`, or nothing.
   [[nodiscard]] std::optional<std::size_t> find(const std::string& name) const;
   /// Returns true if the formula depends on the parameter, directly or through other parameters.
   [[nodiscard]] bool needs(const ParameterFormula& formula, std::size_t parameter) const;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t k_nobody = static_cast<std::size_t>(-1); // index of the ground
 
-// A joint that determines a relative pose, with the indices of its bodies.
+// A joint that prescribes a relative pose, with its two bodies: an edge of the graph of bodies.
 struct Edge {
   std::size_t element = 0;
   const PlacingElement* joint = nullptr;
@@ -22,7 +22,7 @@ struct Edge {
   [[nodiscard]] std::string text() const { return subject_text(kind->name, joint->name); }
 };
 
-// Pose and velocity of a frame relative to the ground.
+// Pose (`place`, `angle`) and velocity of a frame relative to the ground: m, rad, m/s, rad/s.
 struct Frame {
   Vec2 place = Vec2::Zero();
   double angle = 0.0;
@@ -38,7 +38,7 @@ Frame seen_on(const Frame& base, const RelativePose& p) {
           base.spin + p.spin};
 }
 
-// Returns the frame relative to which `frame` has the relative pose p.
+// Returns the base frame, given that `frame` has the pose p relative to it: the inverse of seen_on().
 Frame seen_from(const Frame& frame, const RelativePose& p) {
   Frame base;
   base.angle = frame.angle - p.angle;
@@ -102,7 +102,7 @@ private:
   std::vector<char> is_placed_, is_adrift_;
   std::vector<std::vector<std::size_t>> edges_of_;
   std::deque<std::size_t> waiting_;
-  bool has_unresolved_ = false; // prevents the message "is not connected" for bodies whose joint could not be resolved
+  bool has_unresolved_ = false; // a joint could not be resolved, so that no body is reported as "not connected"
 };
 
 void Placement::find_edges() {
@@ -128,7 +128,7 @@ void Placement::find_edges() {
     add_edge(element, static_cast<const PlacingElement&>(*model_.elements[element].element), pose, markers, bodies);
 }
 
-// Adds a joint to the graph. Unknown names are skipped; validation reports them.
+// Adds a joint to the graph. A joint with unknown names is skipped, since validation reports these.
 void Placement::add_edge(std::size_t element, const PlacingElement& joint, const RelativePose& pose,
                          const std::unordered_map<std::string, const Marker*>& markers,
                          const std::unordered_map<std::string, std::size_t>& bodies) {
@@ -231,7 +231,7 @@ void Placement::report_leftovers() {
   }
 }
 
-// Marks all bodies connected to `body`, so that only one message is given.
+// Marks all bodies connected to `body` by such joints, so that the group is reported once.
 void Placement::mark_adrift(std::size_t body) {
   is_adrift_[body] = 1;
   waiting_.push_back(body);

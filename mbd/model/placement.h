@@ -28,11 +28,11 @@ struct PlacingElement : Element {
   [[nodiscard]] virtual const char* idle_field() const { return nullptr; }
 };
 
-/// Returns the location of a body's field in the file, or nullopt if it is not given.
+/// Function that returns the location of a body's field in the file; nullopt if the field is not given.
 using GivenBodyField = std::function<std::optional<Location>(std::size_t body, const std::string& field)>;
 
-/// Sets pose and velocity of all bodies that joints place. Precondition: positions of markers are known. Appends contradictory, repeated
-/// and missing information to `problems`; `locate` as in validate().
+/// Sets pose and velocity of all bodies whose pose is determined by a joint. Precondition: positions of markers are known. Poses that are
+/// determined twice or not at all are reported in `problems`; `locate` as in validate().
 void place_by_joints(Model& model, const GivenBodyField& given, const FieldLocator& locate, std::vector<Diagnostic>& problems);
 
 } // namespace steplap

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double k_band = 0.001;
 constexpr std::uint32_t k_stream =
-    0x72616e64; // stream of random numbers of this kind, independent of those of other kinds with the same seed
+    0x72616e64; // random stream of this kind of signal, independent of those of other kinds with the same seed
 
 struct Random : SignalDefinition {
   std::vector<double> frequencies, densities; // Hz; unit²/Hz

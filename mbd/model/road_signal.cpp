@@ -20,7 +20,7 @@ namespace {
 
 constexpr double k_band = 0.0125;
 constexpr std::uint32_t k_stream =
-    0x726f6164; // stream of random numbers of this kind, independent of those of other kinds with the same seed
+    0x726f6164; // random stream of this kind of signal, independent of those of other kinds with the same seed
 
 struct Road : SignalDefinition {
   std::optional<std::string> road_class;

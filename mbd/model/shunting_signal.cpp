@@ -43,7 +43,7 @@ struct Part {
 };
 
 struct Node {
-  double t = 0.0, s = 0.0, rate = 0.0, work = 0.0; // for one buffer: time, travel, its rate, absorbed work
+  double t = 0.0, s = 0.0, rate = 0.0, work = 0.0; // state of one buffer: time, travel, rate of the travel, absorbed work
 };
 
 class WagonImpact {
@@ -120,17 +120,17 @@ private:
       parts.push_back(
           {curve[i - 1].x(), curve[i].x(), curve[i - 1].y(), (curve[i].y() - curve[i - 1].y()) / (curve[i].x() - curve[i - 1].x())});
     const Vec2 &last = given_.buffer.back(), &before = given_.buffer[given_.buffer.size() - 2];
-    const double slope = (last.y() - before.y()) / (last.x() - before.x()); // both curves are continued with this slope, so their
-                                                                            // difference remains constant
+    // Both curves continue with the slope of the last loading segment, so that their difference stays constant.
+    const double slope = (last.y() - before.y()) / (last.x() - before.x());
     if (given_.stop_stiffness) parts.push_back({curve.back().x(), 1e30, curve.back().y(), slope + *given_.stop_stiffness});
     return parts;
   }
 
-  // Returns the force of one buffer.
+  // Returns the force of one buffer, N: curve plus damping.
   [[nodiscard]] double force(const Part& part, const Node& n) const {
     return part.force + part.slope * (n.s - part.from) + given_.damping * n.rate;
   }
-  // Returns s̈ = −F/(2 μ) with F = 2 f, since the wagons approach by two travels.
+  // Returns s̈ = −F/(2 μ) = −f/μ, since F = 2 f and the wagons approach by 2 s; f is the force of one buffer.
   [[nodiscard]] double second_rate(const Part& part, const Node& n) const { return -force(part, n) / reduced_; }
 
   [[nodiscard]] Node step(const Part& part, const Node& from, double h) const {
@@ -146,7 +146,7 @@ private:
     return {from.t + h, from.s + sum(ds), from.rate + sum(dv), from.work + sum(dw)};
   }
 
-  // Returns true if the motion has reached the end of this segment.
+  // Returns true if the motion has reached the end of this segment: its last travel, the turning point, or the loss of contact.
   [[nodiscard]] bool is_over(const Part& part, const Node& n, bool is_loading) const {
     return is_loading ? n.s >= part.to || n.rate <= 0.0 : n.s <= part.from || force(part, n) <= 0.0;
   }
@@ -177,7 +177,7 @@ private:
     if (is_loading && now.rate <= 0.0) now.rate = 0.0;
   }
 
-  // Adds the cubic with the values and slopes of the wagon's acceleration at both nodes.
+  // Adds the cubic Hermite polynomial with the values and slopes of the wagon's acceleration at nodes a and b.
   void add_piece(const Part& part, const Node& a, const Node& b) {
     const double h = b.t - a.t;
     if (!(h > 0.0)) return;

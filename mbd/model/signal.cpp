@@ -162,7 +162,7 @@ PieceJet evaluate(const Signal::Piece& piece, double tau, bool has_integrals = t
   return jet;
 }
 
-// Returns a bound of the terms of the piece up to τ, for estimating rounding errors.
+// Returns a bound of |f| on the piece up to τ, as the sum of the absolute terms, for estimating rounding errors.
 double magnitude(const Signal::Piece& piece, double tau) {
   double sum = 0.0;
   for (int i = 3; i >= 0; --i) sum = sum * tau + std::abs(piece.c[i]);
@@ -185,7 +185,7 @@ template <class F> double gauss_mean(double a, double b, double fastest, const F
   return sum / count;
 }
 
-// sin x / x
+// Returns sin x / x.
 double sinc(double x) {
   return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : portable::sin(x) / x; // truncation error below 1e-18
 }
@@ -209,7 +209,7 @@ double mean_of(const Signal::Piece& piece, double a, double b) {
       sum += (after.integral - before.integral) / (b - a);
       continue;
     }
-    // A power τⁿ is treated like n half-waves over the whole piece.
+    // A term τⁿ is integrated as finely as n half-waves over the piece.
     const double turn = std::abs(wave.frequency) + (b > 0.0 ? wave.power / b : 0.0);
     sum += gauss_mean(a, b, turn, [&](double tau) {
       PieceJet jet;
@@ -295,7 +295,7 @@ void Signal::accumulate_integrals() {
 }
 
 const Signal::Piece* Signal::piece_at(double t) const {
-  constexpr std::ptrdiff_t k_few = 8; // pieces searched linearly from the last one, where runs spend most of their time
+  constexpr std::ptrdiff_t k_few = 8; // number of pieces searched linearly from the last piece, where runs spend most of their time
   const Piece *const begin = pieces_.data(), *piece = begin + pieces_.size();
   if (piece <= begin + k_few) {
     while (piece != begin)
@@ -313,7 +313,7 @@ double Signal::value(double t) const {
 
 namespace {
 
-// Result of drive() for an acceleration on a simple piece, without the derivatives that it does not need. Bit-identical to evaluate().
+// Returns drive() for level acceleration on a piece with is_usual, without derivatives that are not needed. Bit-identical to evaluate().
 [[gnu::noinline]] SignalJet driven_by_acceleration(const Signal::Piece& piece, double tau) {
   double value = piece.c[0], integral = tau * piece.c[0], double_integral = tau * tau * (piece.c[0] / 2);
   for (const Signal::Harmonic& h : piece.harmonics) {
@@ -329,7 +329,7 @@ namespace {
   return {double_integral + (piece.double_integral + piece.integral * tau), integral + piece.integral, value};
 }
 
-// Result of drive() for any piece, or for none. `value_at_zero` is f(0).
+// Returns drive() for any piece; `piece` null: before the first one. `value_at_zero` is f(0).
 [[gnu::noinline]] SignalJet driven_by(const Signal::Piece* piece, const std::vector<Signal::Piece>& pieces, double value_at_zero, double t,
                                       DriveLevel level) {
   PieceJet jet;
@@ -353,7 +353,7 @@ namespace {
 
 } // namespace
 
-// Simple pieces are evaluated inline, without a call: a drive is constant for most of a run.
+// Evaluates the most frequent case inline, because a drive is constant during most of a run.
 SignalJet Signal::drive(double t, DriveLevel level) const {
   const Piece* const piece = piece_at(t);
   if (level != DriveLevel::acceleration || !piece || !piece->is_usual) return driven_by(piece, pieces_, value_at_zero_, t, level);
@@ -379,7 +379,7 @@ double Signal::mean(double from, double to) const {
 
 double Signal::fastest_at(double t) const {
   constexpr int k_tame_power = 3;   // cubics need no step limit: every method follows them
-  constexpr double k_slight = 1e-2; // relative to the piece: lower humps change no extreme significantly, and step errors detect them
+  constexpr double k_slight = 1e-2; // relative to the piece: smaller bulges change no extreme significantly, and step errors detect them
   double fastest = 0.0;
   const Piece* piece = piece_at(t);
   if (!piece) return fastest;
@@ -408,13 +408,13 @@ namespace {
 
 constexpr double k_least_jump = 1e-12; // relative to the terms of both sides: a smaller difference is rounding, not a jump
 
-// Values on both sides of a breakpoint, and a bound of their rounding error.
+// Values on both sides of a breakpoint. `scale` is the size of the terms, to which rounding errors are proportional.
 struct Sides {
   double before = 0.0, after = 0.0, scale = 0.0;
   [[nodiscard]] bool differ() const { return std::abs(after - before) > k_least_jump * scale; }
 };
 
-// Returns a bound of the terms of f′ on a piece up to τ.
+// Returns a bound of |f′| on the piece up to τ, as the sum of the absolute terms.
 double rate_magnitude(const Signal::Piece& piece, double tau) {
   double sum = std::abs(piece.c[1]) + tau * (2.0 * std::abs(piece.c[2]) + tau * 3.0 * std::abs(piece.c[3]));
   for (const Signal::Harmonic& h : piece.harmonics) sum += std::abs(h.amplitude * h.frequency);
@@ -425,7 +425,7 @@ double rate_magnitude(const Signal::Piece& piece, double tau) {
   return sum;
 }
 
-// Returns the uncertainty of the value at the end of a piece due to rounding of its start and end times, for example by delays.
+// Returns a bound of the error in the value at the end of a piece that is due to rounded start and end times; delays cause these.
 double time_rounding(const Signal::Piece& piece, double end, double length) {
   return 4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(piece.start), std::abs(end)) * rate_magnitude(piece, length);
 }
@@ -441,7 +441,7 @@ Sides values_at(const std::vector<Signal::Piece>& pieces, std::size_t k) {
   return sides;
 }
 
-// Returns the uncertainty of the slope of a line between two samples, due to rounding of their values and times.
+// Returns a bound of the error in the slope between two samples that is due to rounding of their values and times.
 double slope_rounding(const Signal::Piece& piece, double length) {
   const double value = magnitude(piece, length) + std::abs(piece.start) * rate_magnitude(piece, length);
   return 16.0 * std::numeric_limits<double>::epsilon() * value / length;

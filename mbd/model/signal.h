@@ -23,10 +23,10 @@ struct SignalJet {
   double acceleration = 0.0; ///< per s²
 };
 
-/// Meaning of a signal that drives a coordinate: position, velocity or acceleration.
+/// Derivative of a coordinate that a signal prescribes.
 enum class DriveLevel { position, velocity, acceleration };
 
-/// A function of time t in s, immutable and therefore safe to read from several threads. The unit of its values is defined by its use.
+/// A function of time t in s. It never changes, so that several threads may evaluate it. The unit of its values follows from its use.
 class Signal {
 public:
   /// amplitude · cos(frequency τ + phase), with τ = t − start of the piece; frequency ≠ 0.
@@ -55,8 +55,7 @@ public:
     std::vector<Harmonic> harmonics;    ///< Σ harmonics
     std::vector<Modulated> modulated;   ///< Σ modulated harmonics
     bool is_level = true;               ///< c1 = c2 = c3 = 0; computed by Signal
-    bool is_usual = true;               ///< few harmonics and nothing modulated, as in most drives, evaluated by a faster path; computed by
-                                        ///< Signal
+    bool is_usual = true;               ///< a constant and at most seven harmonics, which a faster path evaluates; computed by Signal
     double integral = 0.0;              ///< ∫ from 0 to start; computed by Signal
     double double_integral = 0.0;       ///< ∬ from 0 to start; computed by Signal
   };
@@ -70,8 +69,8 @@ public:
 
   /// Returns f(t).
   [[nodiscard]] double value(double t) const;
-  /// Returns the increment of the driven coordinate since t = 0, its rate and its acceleration at t. Increment for level position: f(t) −
-  /// f(0); velocity: ∫f; acceleration: ∬f (from rest at t = 0).
+  /// Returns the prescribed coordinate relative to its value at t = 0, its rate and its acceleration, at time t. The coordinate is f(t) −
+  /// f(0) for level position, ∫f for velocity, and ∬f, from rest at t = 0, for acceleration.
   [[nodiscard]] SignalJet drive(double t, DriveLevel level) const;
   /// Returns the mean value of f over [from, to], from < to.
   [[nodiscard]] double mean(double from, double to) const;
@@ -112,7 +111,7 @@ struct SignalDefinition {
   Location where;   ///< location in the model file
 };
 
-/// Returns a new default-constructed T. Used by kinds, which refer to their entries by base class.
+/// Returns a new default-constructed T as a Base. Kinds refer to their entries by base class.
 template <class Base, class T> std::shared_ptr<Base> make_held() { return std::make_shared<T>(); }
 /// Returns a copy of `object`, which must be a T.
 template <class Base, class T> std::shared_ptr<Base> copy_held(const Base& object) {
@@ -128,7 +127,7 @@ struct SignalKind {
   std::shared_ptr<SignalDefinition> (*copy)(const SignalDefinition& definition) = nullptr; ///< returns a copy; set by holds()
   /// Makes the signal. Throws ModelError (at definition.where) if the values do not define a signal.
   Signal (*build)(const SignalDefinition& definition) = nullptr;
-  /// Used instead of `build` by kinds that combine other signals; `parts` in the order of the fields.
+  /// Makes a signal from others, in place of `build`. `parts` are the referenced signals, in the order of the fields.
   Signal (*combine)(const SignalDefinition& definition, const std::vector<const Signal*>& parts) = nullptr;
 
   /// Declares T as the struct of its definitions.

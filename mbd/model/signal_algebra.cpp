@@ -18,7 +18,7 @@ constexpr double k_same_time = 16.0 * k_epsilon;     // relative; times closer t
                                                      // same time given as a number
 constexpr double k_same_frequency = 4.0 * k_epsilon; // relative to the larger; closer frequencies are merged
 
-// A piece in a form suited to algebra: a polynomial of any degree and waves A τⁿ cos(ωτ + φ) with ω > 0.
+// A piece as polynomial of any degree plus waves A τⁿ cos(ωτ + φ) with ω > 0.
 struct Terms {
   std::array<double, k_most_power + 1> polynomial{};
   std::vector<Signal::Modulated> waves;
@@ -57,7 +57,7 @@ template <class Take> void expand(int n, double d, const Take& take) {
   }
 }
 
-// Returns the piece as a function of the time since `start`, which must not precede the start of the piece.
+// Returns the piece as a function of the time since `start`, which must not be before the start of the piece.
 Terms terms_of(const Signal::Piece& piece, double start) {
   double d = start - piece.start;
   if (std::abs(d) <= k_same_time * std::abs(start)) d = 0.0;
@@ -107,7 +107,8 @@ Terms product(const Terms& a, const Terms& b) {
   return result;
 }
 
-// Returns the starts of all pieces, without times that differ only by rounding. A constant begins with the earliest of the others.
+// Returns the starts of all pieces in ascending order, without times that differ only by rounding. Constant signals add only t = 0, and
+// only if no other signal begins before.
 std::vector<double> starts_of(const std::vector<const Signal*>& parts) {
   std::vector<double> times;
   bool has_constant = false;
@@ -123,7 +124,7 @@ std::vector<double> starts_of(const std::vector<const Signal*>& parts) {
   return times;
 }
 
-// Returns the piece of one signal for a sequence of ascending times.
+// Returns the terms of one signal at ascending times, by advancing through its pieces.
 class Cursor {
 public:
   explicit Cursor(const Signal& signal) : signal_(signal) {}
@@ -141,7 +142,8 @@ private:
   std::size_t next_ = 0;
 };
 
-// Combines pieces of several signals between common breakpoints: combine(k, terms of signal k, result so far).
+// Builds a signal piece by piece. For each interval between common breakpoints, combine(k, terms, result) is called for each signal k in
+// turn.
 template <class Combine> Signal combined(const std::vector<const Signal*>& parts, const Combine& combine) {
   std::vector<Cursor> cursors;
   for (const Signal* part : parts) cursors.emplace_back(*part);

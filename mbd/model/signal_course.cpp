@@ -21,7 +21,7 @@ bool is_modulated(const Piece& piece) {
 bool is_level(const Piece& piece) { return piece.is_level && !has_waves(piece) && !is_modulated(piece); }
 bool is_stationary(const Piece& piece) { return piece.is_level && has_waves(piece) && !is_modulated(piece); }
 
-// Returns Σ a², twice the mean square.
+// Returns Σ a², which is twice the mean square of the piece.
 double power_of(const Piece& piece) {
   double square = 0.0;
   for (const Signal::Harmonic& h : piece.harmonics) square += h.amplitude * h.amplitude;
@@ -55,7 +55,8 @@ SignalCourse course_of(const Signal& signal) {
   const double slack = rounding_of(signal);
   const auto is_at = [slack](const Piece& piece, double level) { return is_level(piece) && std::abs(piece.c[0] - level) <= slack; };
   const Piece& last = pieces.back();
-  // A pulse that begins at t = 0 also begins with a level. If the signal ends at zero, it is compared with zero instead.
+  // If the last piece is zero, the reference level is zero: a pulse that begins at t = 0 also has a constant first piece. Otherwise a
+  // constant first piece gives the reference level.
   const bool begins_level = is_level(pieces.front()) && pieces.front().start <= 0.0 && !is_at(last, 0.0);
   const double level = begins_level ? pieces.front().c[0] : 0.0;
   const auto first = std::find_if(pieces.begin(), pieces.end(), [&](const Piece& piece) { return !is_at(piece, level); });
@@ -66,7 +67,8 @@ SignalCourse course_of(const Signal& signal) {
   if (is_at(last, level)) {
     course.ends = last_start;
     if (course.ends <= 0.0) return {};
-    // Harmonics that rise or fall by an envelope consist of harmonics, too, but have less power than the stationary part.
+    // The stationary part is the piece of pure harmonics with the largest power. The rising and falling parts of an envelope consist of
+    // harmonics, too, but have less.
     const Piece* strongest = nullptr;
     for (const Piece& piece : pieces)
       if (is_stationary(piece) && (!strongest || power_of(piece) > power_of(*strongest))) strongest = &piece;

@@ -18,7 +18,7 @@
 
 namespace steplap {
 
-/// Times of the course, s; infinite means never.
+/// Times of the course, s; infinite: never.
 struct SignalCourse {
   static constexpr double k_periods = 10.0; ///< number of mean periods at full size after which a stationary load counts as fully applied
 

@@ -149,7 +149,7 @@ struct Trapezoid : SignalDefinition {
   std::optional<double> hold;     // s
 };
 
-// Returns the times at which the value begins to rise, reaches its peak, leaves it, and is zero again.
+// Returns the times of the four corners: begin of the rise, begin and end of the peak, end of the fall.
 std::array<double, 4> corners_of(const Trapezoid& p) {
   const double rise_end = p.start + p.rise;
   if (p.hold) return {p.start, rise_end, rise_end + *p.hold, rise_end + *p.hold + p.fall};

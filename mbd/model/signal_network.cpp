@@ -20,7 +20,7 @@ std::vector<std::string> parts_of(const FieldTable& fields, const void* object) 
 
 namespace {
 
-// Field for the speed of signals that depend on position. A signal that is made of a single other one inherits its speed.
+// Name of the field for the speed in signals that depend on position. A signal that combines a single other one uses the speed of that one.
 constexpr const char* k_speed = "speed";
 
 template <class Items> std::optional<double> speed_of(const Items& items, const std::string& name) {
@@ -33,7 +33,7 @@ template <class Items> std::optional<double> speed_of(const Items& items, const 
   return parts.size() == 1 ? speed_of(items, parts.front()) : std::nullopt;
 }
 
-// Returns the definition, with the speed of the signal it refers to if it gives none itself.
+// Returns the definition; if it has a speed field that is not given, with the speed of the signal to which it refers.
 template <class Items> std::shared_ptr<const SignalDefinition> completed(const Items& items, const SignalEntry& entry) {
   const Field* const field = entry.kind->fields.find(k_speed);
   const std::vector<std::string> parts = parts_of(entry.kind->fields, entry.definition.get());

@@ -13,8 +13,8 @@ public:
   /// Keeps references to the signals of `model`; none may be added later.
   explicit SignalNetwork(const Model& model);
 
-  /// Returns the signal, built on the first call. Returns null if the name is unknown, or if it or a signal it refers to is excluded or has
-  /// failed before. Throws ModelError if its values do not define a signal, or if it refers to itself.
+  /// Returns the signal; the first call builds it and those to which it refers. Returns null if the name is unknown, or if the signal or
+  /// one of those is excluded or has failed before. Throws ModelError if its values do not define a signal, or if it refers to itself.
   const Signal* build(const std::string& name);
   /// Marks a signal as unusable because its error has already been reported.
   void exclude(const std::string& name);

@@ -12,7 +12,7 @@ namespace steplap {
 namespace {
 
 constexpr double k_pi = std::numbers::pi;
-constexpr double k_flat = 1e-5; // below this exponent the logarithmic series is used; truncation error below 1e-15
+constexpr double k_flat = 1e-5; // limit of |g ln(b/a)| below which a power series is used; truncation error below 1e-15
 
 double log_of(double x) { return portable::log10(x) * std::numbers::ln10; }
 
@@ -26,7 +26,7 @@ struct PowerLaw {
     if (std::abs(g * r) < k_flat) return at_a * a * r * (1.0 + g * r * (0.5 + g * r / 6.0));
     return at_a * a * (portable::pow(b / a, g) - 1.0) / g;
   }
-  // Returns the frequency below which the share u of the integral from a to b lies.
+  // Returns the frequency below which the fraction u of the integral from a to b lies.
   [[nodiscard]] double quantile(double a, double b, double u) const {
     const double g = exponent + 1.0;
     if (std::abs(g * log_of(b / a)) < k_flat) return a * portable::pow(b / a, u);
@@ -41,14 +41,15 @@ Signal::Piece level(double start, double value) {
   return piece;
 }
 
-// Returns the same waves with phases at time τ.
+// Returns the waves with their phases advanced by the time τ.
 std::vector<Signal::Harmonic> later(const std::vector<Signal::Harmonic>& waves, double tau) {
   std::vector<Signal::Harmonic> result = waves;
   for (Signal::Harmonic& h : result) h.phase += h.frequency * tau;
   return result;
 }
 
-// (½ + ½ sign cos Ωτ) Σ A cos(ωτ + φ), expanded: each wave gets two neighbours with frequencies ω ± Ω.
+// Returns the piece (½ + ½ sign cos Ωτ) Σ A cos(ωτ + φ), Ω = π/length. The products are expanded: each wave gets two neighbours with
+// frequencies ω ± Ω.
 Signal::Piece ramp(double start, double length, double sign, const std::vector<Signal::Harmonic>& waves) {
   Signal::Piece piece = level(start, 0.0);
   const double turn = k_pi / length;

@@ -63,8 +63,8 @@ bool is_absent(const FieldValue& value) {
   return text && text->empty();
 }
 
-// Returns true if a number, or a component of a point, is within the range of the field. This is checked first because composing the
-// message is slow.
+// Returns true if a number, or a component of a point, is within the range of the field. Checked before the message is composed, which is
+// slow.
 bool is_allowed(const Field& field, double value) {
   const bool is_above = field.is_minimum_excluded ? value > field.minimum : value >= field.minimum;
   return std::isfinite(value) && is_above && value <= field.maximum;
@@ -93,7 +93,7 @@ std::string choice_problem(const Field& field, const std::string& value) {
   return "must be one of " + list + ", got '" + value + "'" + did_you_mean(value, field.choices);
 }
 
-// Returns the message for the first number that is out of range.
+// Returns the message for the first number in the value that is out of range; "" if all are in range.
 std::string first_problem(const Field& field, double value) { return number_problem(field, value); }
 std::string first_problem(const Field& field, const Vec2& p) {
   const std::string of_x = number_problem(field, p.x());
@@ -190,7 +190,7 @@ std::string FieldChecker::suggestion(FieldType type, const std::string& name) {
 
 namespace {
 
-// One validation of a model.
+// Collects the errors of one model.
 class Validation {
 public:
   Validation(const Model& model, const FieldLocator& locate) : model_(model), locate_(locate), checker_(model, problems_) {}
@@ -311,7 +311,7 @@ void Validation::check_markers() {
   }
 }
 
-// Returns true if all fields of the signal were read without error.
+// Returns true if all fields of the signal could be read.
 bool Validation::is_readable(std::size_t signal) const {
   const SignalEntry& entry = model_.signals[signal];
   for (const Field& field : entry.kind->fields.fields())

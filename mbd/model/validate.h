@@ -9,7 +9,8 @@
 
 namespace steplap {
 
-/// Part of a model file. Section::header also has the key "body".
+/// Part of a model file, for locating a field. Section::header contains the top-level keys and, for errors about missing bodies, the key
+/// "body".
 enum class Section { header, simulation, output, body, marker, signal, element };
 
 /// Returns the location of a field of entry `index` of a section; nullopt if an error of this field has already been reported.
@@ -24,7 +25,7 @@ public:
   /// Returns the location of a field of the object; nullopt if an error of this field has already been reported.
   using Locate = std::function<std::optional<Location>(const std::string& field)>;
 
-  /// Keeps references to both arguments. Names added to the model later are unknown to it.
+  /// Keeps references to both arguments. Names that are added to the model later are not recognised.
   FieldChecker(const Model& model, std::vector<Diagnostic>& problems);
 
   /// Checks all fields of `object`. `subject` is its name in messages: "body 'tank'".
@@ -48,7 +49,7 @@ private:
 /// Returns a message such as "must be at least 0 kg, got -1" or "must be one of ..." if numbers or choices in `value` are outside the
 /// allowed range; "" otherwise, also for other types.
 [[nodiscard]] std::string range_problem(const Field& field, const FieldValue& value);
-/// Returns true if the field of the object is not given or is within its range.
+/// Returns true if the object's field is within its range, or not given.
 [[nodiscard]] bool is_in_range(const Field& field, const void* object);
 
 /// Returns the message for a required field that is missing.
@@ -57,9 +58,9 @@ private:
 /// Returns "body 'tank'", or "a body" for an empty name.
 [[nodiscard]] std::string subject_text(const std::string& kind, const std::string& name);
 
-/// Returns true for methods with 'step' rather than 'tolerance'.
+/// Returns true if the integration method has a fixed step, so that 'step' is required rather than 'tolerance'.
 [[nodiscard]] bool has_fixed_step(const std::string& integrator);
-/// Returns true for required fields that this body may omit: mass and inertia of a fixed body.
+/// Returns true for required fields that this body may omit: a fixed body needs no mass and inertia.
 [[nodiscard]] bool is_excused(const Body& body, const Field& field);
 
 } // namespace steplap
