@@ -58,7 +58,8 @@ public:
     if (::close(descriptor) != 0) fail(target_, errno);
   }
 
-  // A hard link fails if the target exists, so two simultaneous runs cannot overwrite each other's file.
+  // Gives the temporary file its final name. If existing files must not be replaced, a hard link is made, which fails if the target exists;
+  // so two simultaneous runs cannot overwrite each other's file.
   void become_target(IfExists if_exists) {
     if (if_exists == IfExists::refuse && ::link(name_.c_str(), target_.c_str()) == 0) return;
     if (if_exists == IfExists::refuse && errno == EEXIST) refuse(target_);

@@ -70,11 +70,11 @@ bool begins_like_number(std::string_view field) {
   return !field.empty() && field.front() >= '0' && field.front() <= '9';
 }
 
-// Interpretation of a field of the first row.
+// Kind of a field in the first row: a column name, a number, or without letters and digits.
 enum class FirstField { name, number, nothing };
 
-// Returns the number of bytes of a character at the start of `text` that occurs in damaged numbers but not in names: dashes, blanks and
-// digits beyond ASCII; 0 if there is none.
+// Returns the number of bytes of the first character of `text` if it occurs in garbled numbers but not in names: dashes, blanks and digits
+// beyond ASCII; 0 if there is none.
 std::size_t strange_bytes_of_number(std::string_view text) {
   for (const std::string_view such :
        {"\xE2\x88\x92", "\xE2\x80", "\xEF\xBC", "\xC2\xA0", "\xD9"}) // −, dashes and thin blanks, full-width, blank, Arabic
@@ -82,8 +82,8 @@ std::size_t strange_bytes_of_number(std::string_view text) {
   return 0;
 }
 
-// Returns whether a field is a name: it contains a letter other than an exponent. `is_doubtful` is set if it could be a mistyped number: at
-// least as many digits as letters, and a point ("O.25", "x0.1").
+// Classifies a field of the first row. A name contains a letter other than that of an exponent. `is_doubtful` is set if a name could be a
+// mistyped number ("O.25", "x0.1"): at most two letters, at least as many digits, and a point or comma.
 FirstField first_field(std::string_view field, bool& is_doubtful) {
   std::size_t letters = 0, digits = 0, points = 0, strange = 0;
   bool has_exponent = false;
@@ -136,8 +136,8 @@ private:
     table_.lines.push_back(line_);
   }
 
-  // Reads the first row. Returns true if it contains names. A row whose first field begins like a number, or without any name, is data. So
-  // a mistyped number is reported with its column, instead of being taken for a column name and the row lost.
+  // Reads the first row. Returns true if it contains column names. It counts as data if its first field begins like a number, or if no
+  // field is a name. A mistyped number is therefore reported with its column, and the row is not lost as a row of names.
   bool read_header() {
     table_.columns.resize(fields_.size());
     if (begins_like_number(fields_.front())) return false;
@@ -172,7 +172,7 @@ private:
     return *number;
   }
 
-  // Checks for mixed decimal marks: "1,000" next to "0.5" may mean one thousand.
+  // Checks that decimal marks are not mixed: "1,000" next to "0.5" may mean one thousand.
   void note_decimals(std::string_view field, const std::string& place) {
     if (delimiter_ == ',') return;
     const char mark = field.find(',') != std::string_view::npos ? ',' : field.find('.') != std::string_view::npos ? '.' : '\0';
@@ -237,8 +237,8 @@ CsvText::CsvText(std::span<const std::string> names, std::size_t rows) {
   text_ += '\n';
 }
 
-// Adds a row. Numbers equal to those in the previous row are copied from its text, which is faster than formatting: modes, areas, bodies at
-// rest.
+// Adds a row. A number that equals the one above it is copied from the text of the previous row, which is faster than formatting; this is
+// frequent for modes, areas and bodies at rest.
 void CsvText::add_row(std::span<const double> values) {
   const std::size_t before = text_.size();
   row_.resize(values.size() * k_most + k_number_room);

@@ -21,11 +21,11 @@ struct CsvTable {
   std::vector<std::vector<double>> columns; ///< equal lengths
   std::vector<int> lines;                   ///< line number in the file, for each row
 
-  /// Returns the index of a column given by its name or number (from 1). Throws ModelError at `where` if there is none.
+  /// Returns the index of the column with this name, or with this number counted from 1. Throws ModelError at `where` if there is none.
   [[nodiscard]] std::size_t column(const std::string& name_or_number, const Location& where) const;
 };
 
-/// Reads a file. Throws ModelError at `where` if it cannot be read or, with `wanted` not empty, if its SHA-256 differs from it. Throws
+/// Reads a file. Throws ModelError at `where` if it cannot be read, or if its SHA-256 differs from `wanted`, unless that is empty. Throws
 /// ModelError with file:line for rows of unequal length, fields that are not finite numbers, a first row that mixes words and numbers, and
 /// a file without rows.
 [[nodiscard]] CsvTable read_csv(const std::string& path, const Location& where, const std::string& wanted = "");
@@ -48,7 +48,7 @@ public:
   [[nodiscard]] std::string text() && { return std::move(text_); }
 
 private:
-  struct Field { ///< field of the previous row
+  struct Field { ///< position of a field in the previous row
     std::uint64_t bits = 0;
     std::size_t start = 0, length = 0; ///< position in the text, including the delimiter
   };

@@ -1,4 +1,5 @@
-// All parts of a model file that have a field table, with their default values. The reference and the schema are generated from them.
+// All tables of a model file that have a field table, with their default values. The reference and the JSON Schema are generated from this
+// list.
 #pragma once
 
 #include "mbd/model/model.h"

@@ -1,5 +1,5 @@
-// Calls OpenSSL's SHA-256 functions directly instead of EVP_Digest…. EVP reads the configuration of the machine and builds tables of all
-// algorithms first, which costs as much as the digest of 170 kB.
+// Calls OpenSSL's SHA-256 functions directly. The newer EVP functions first read the configuration of the machine and build tables of all
+// algorithms, which takes as long as the digest of 170 kB.
 #define OPENSSL_API_COMPAT 10101 // where these functions are declared without a warning
 #include "mbd/io/digest.h"
 
@@ -17,7 +17,7 @@ struct Sha256::Context {
 
 namespace {
 
-// Throws if OpenSSL reports failure, since a wrong digest would go unnoticed.
+// Throws if a call of OpenSSL failed, because a wrong digest would not be noticed.
 void require(int is_done) {
   if (is_done != 1) throw std::runtime_error("OpenSSL cannot compute a SHA-256");
 }

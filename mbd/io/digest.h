@@ -1,5 +1,5 @@
-// SHA-256 of inputs and outputs, so that a result identifies its inputs and a reader can check a file; and base64, which carries numbers in
-// HTML pages. The only module that depends on OpenSSL.
+// SHA-256 of inputs and outputs, by which a result identifies its inputs and a reader can check a file; and base64, by which HTML pages
+// contain binary numbers. This is the only module that depends on OpenSSL.
 #pragma once
 
 #include <cstddef>

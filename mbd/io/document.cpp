@@ -25,7 +25,7 @@ std::string read_layer(const std::string& path, const Location& where) {
   return text;
 }
 
-// Merges a file's tree over the tree that it extends.
+// Merges the tree of a file into the tree of the file that it extends.
 class Merger {
 public:
   explicit Merger(std::vector<Diagnostic>& problems) : problems_(problems) {}
@@ -52,7 +52,7 @@ public:
     base.column = over.column;
   }
 
-  // Returns false if the entry is to be removed.
+  // Merges `over` into `base`. Returns false if `over` removes the entry.
   bool lay_over(Node& base, Node& over, const std::string& array) {
     if (take_flag(over, "remove")) return false;
     merge_table(base, over, array + " '" + entry_name(over) + "'");
@@ -60,7 +60,8 @@ public:
   }
 
 private:
-  // Records the names of parts with a point appended; for repeated parts only the text before the index.
+  // Records the names of parts with a point appended, as prefixes of the names in them. For a repeated part this is the text before the
+  // index.
   void note_parts(const Node& root) {
     const Node* const parts = root.find("part");
     if (!parts || !parts->is_array_of_tables()) return;
@@ -94,7 +95,7 @@ private:
     else base.children.push_back(std::move(child));
   }
 
-  // Gives a parameter another value and keeps its range and description.
+  // Sets a parameter to another value. A range and a description that it inherits are kept.
   static void replace_parameter(Node& base, Node& child) {
     Node* const inherited = base.find(child.key);
     if (!inherited || !inherited->is_table() || !inherited->find("value")) return replace(base, child);
@@ -162,7 +163,7 @@ private:
     if (!removed.empty()) std::erase_if(base.children, [&](const Node& n) { return removed.count(entry_name(n)) > 0; });
   }
 
-  // Returns the flag and removes its key.
+  // Returns the value of a boolean key, false if it is missing, and removes the key from the entry.
   bool take_flag(Node& entry, const std::string& key) {
     const Node* given = entry.find(key);
     if (!given) return false;
@@ -229,7 +230,7 @@ private:
     return base;
   }
 
-  // `format` is a property of the file, not of the model: a file and the one that it extends may have different formats.
+  // Checks the key `format` and removes it. It belongs to the file: a file and the one that it extends may have different formats.
   void take_format(Node& root, const std::string& file) {
     if (const Node* format = root.find("format")) check_format(*format);
     else add_once(document_.files_without_format, file);
@@ -274,14 +275,14 @@ private:
     }
   }
 
-  // Returns the same text for the same file under any of its names; for a pipe its name.
+  // Returns a text that is equal for all names of the same file. For a pipe this is the name itself.
   static std::string identity_of(const std::string& file) {
     std::error_code error;
     const std::filesystem::path path = std::filesystem::weakly_canonical(file, error);
     return error ? file : path.string();
   }
 
-  // Larger than any sensible chain, and small enough for the stack.
+  // Longest chain of files that extend each other: longer than any that is meant, and safe for the stack.
   static constexpr std::size_t k_longest_chain = 100;
 
   static std::string base_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }

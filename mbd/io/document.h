@@ -13,7 +13,7 @@
 
 namespace steplap {
 
-/// Version of the model-file format, as in `format = 1` at the top of a file. Each file has its own.
+/// Version of the model-file format. Each file states the version of its own text, by `format = 1` at its top.
 inline constexpr long k_file_format = 1;
 
 struct Document {
@@ -22,13 +22,13 @@ struct Document {
     std::string text;
   };
 
-  /// File that is a sub-assembly of the model or of another part (parts.h).
+  /// A file that is used as a sub-assembly of the model or of another part (parts.h).
   struct Part {
     std::string prefix;      ///< prefix of all names in it: "wagon 2."
     const std::string* file; ///< name of the file
     Location where;          ///< location of its [[part]]
   };
-  /// Formula for the position of a part, whose unit is to be checked.
+  /// Formula for a coordinate of a part's position. The unit of its result is checked later, when parameters are known.
   struct PartPlace {
     Node node;
     std::string unit, subject;
@@ -37,7 +37,7 @@ struct Document {
   Node root;
   std::shared_ptr<std::deque<Source>> sources; ///< the file, then the files that it extends and those of its parts
   std::vector<Diagnostic> problems;            ///< problems found while merging, reported with all others
-  std::vector<Part> parts;                     ///< each after the part that contains it
+  std::vector<Part> parts;                     ///< each part comes after the part that contains it
   std::vector<PartPlace> part_places;
   std::vector<std::string> files_without_format; ///< each listed once
   bool is_repeated = false;                      ///< some entries come from `repeat`
@@ -47,11 +47,10 @@ struct Document {
 [[nodiscard]] Document load_document(const std::string& path);
 /// Reads a text. `file_name` is used in messages and as the base of relative paths in `extends`.
 [[nodiscard]] Document parse_document(std::string text, const std::string& file_name);
-/// Reads another file with all that it extends, and adds its sources and problems to the document. Returns its tree. Throws as
-/// load_document(), at `where` if the file cannot be read.
+/// Reads another file with all files that it extends, and adds these files and their problems to the document. Returns the tree. Throws
+/// like load_document(), at `where` if the file cannot be read.
 [[nodiscard]] Node load_into(Document& document, const std::string& path, const Location& where);
-/// Merges the entry `over` of [[array]] over `base`, as for an extending file's entry of the same name. Returns false if it says `remove =
-/// true`.
+/// Merges the entry `over` of [[array]] into the inherited entry `base` of the same name. Returns false if `over` says `remove = true`.
 [[nodiscard]] bool lay_over(Node& base, Node over, const std::string& array, std::vector<Diagnostic>& problems);
 /// Returns the text of the file and of all files that it extends, each after a line with its name.
 [[nodiscard]] std::string model_source_text(const std::string& path);

@@ -31,7 +31,7 @@ std::string list_of(const std::vector<std::string>& names) {
   return text;
 }
 
-// Error of a value; an empty message if it was already reported. Thrown and caught within this file only.
+// Error in a value, thrown and caught within this file only. The message is empty if the error was reported already.
 struct BadValue {
   const Node* node;
   std::string message;
@@ -106,7 +106,7 @@ private:
     return node.text();
   }
 
-  // "" marks a field that is not given, so it is refused as a value.
+  // Returns a choice. An empty text is refused, because it represents a field that is not given.
   std::string choice(const Node& node) const {
     std::string chosen = text(node);
     if (chosen.empty() && !field_.is_required)
@@ -115,7 +115,7 @@ private:
   }
 
   std::string quantity(const Node& node) const {
-    const double value = number(node, "*"); // report text that is not a quantity in any unit now
+    const double value = number(node, "*"); // checks now that the text is a quantity in some unit
     if (is_formula(node)) return reading_.parameters->text_of(node);
     return node.type == Node::Type::text ? node.text() : number_text(value);
   }
@@ -162,7 +162,7 @@ private:
   const TableReading& reading_;
 };
 
-// Reports an unknown key. Returns the known key that was probably meant, "" if there is none.
+// Reports an unknown key. Returns the most similar known key; "" if none is similar.
 std::string report_unknown(const Node& child, const FieldTable& fields, const TableReading& reading, std::vector<Diagnostic>& problems) {
   std::vector<std::string> known = reading.known_keys;
   for (const std::string& name : fields.names())
@@ -173,7 +173,7 @@ std::string report_unknown(const Node& child, const FieldTable& fields, const Ta
   return nearest_name(child.key, known);
 }
 
-// Reads a value; its unit may depend on fields read before.
+// Reads a value. The unit of some fields depends on other fields of `object`, which must have been read before.
 FieldValue read_value(const Node& child, const FieldTable& fields, const Field& field, const void* object, const TableReading& reading) {
   if (!hangs_on_others(field)) return ValueReader(field, reading).read(child);
   Field own = field;
@@ -192,8 +192,8 @@ GivenField read_field(const Node& child, const FieldTable& fields, const Field& 
   return {&field, &child, true};
 }
 
-// Returns the field that had the key's name in earlier versions; nullptr if there is none. If its present name is given too, this is
-// reported as an error.
+// Returns the field to which the key belonged in an earlier version under another name; nullptr if there is none. Reports an error if the
+// field is also given under its present name.
 const Field* renamed_field(const Node& table, const Node& child, const FieldTable& fields, const TableReading& reading,
                            std::vector<Diagnostic>& problems) {
   const Field* const field = fields.find_earlier(child.key);
@@ -207,7 +207,7 @@ const Field* renamed_field(const Node& table, const Node& child, const FieldTabl
   return field;
 }
 
-// Reports missing required fields, except those present with a misspelt key, which were reported before.
+// Reports missing required fields, except those in `misspelt`: their misspelt keys were reported as unknown.
 void report_missing(const Node& table, const FieldTable& fields, const TableReading& reading, const std::vector<std::string>& misspelt,
                     std::vector<GivenField>& given, std::vector<Diagnostic>& problems) {
   for (const Field& field : fields.fields()) {

@@ -12,7 +12,7 @@ namespace steplap {
 class ParametersReader;
 struct RenamedKey;
 
-/// Field as given in a file; a required field that is missing has no node.
+/// A field found in a table. `node` is null for a required field that is missing.
 struct GivenField {
   const Field* field = nullptr;
   const Node* node = nullptr;
@@ -29,7 +29,7 @@ struct TableReading {
   std::vector<RenamedKey>* renamed = nullptr; ///< collects keys that have an earlier name; if null, such keys are read silently
 };
 
-/// Sets the members of `object` that `table` gives. Returns the fields found. Appends problems.
+/// Sets the members of `object` whose fields `table` contains. Returns the fields found. Appends errors to `problems`.
 std::vector<GivenField> read_fields(const Node& table, const FieldTable& fields, void* object, const TableReading& reading,
                                     std::vector<Diagnostic>& problems);
 

@@ -1,4 +1,4 @@
-// Records which files were read and their checksums, so that results can identify their inputs.
+// Records which files a computation reads, with their checksums, so that results can identify their inputs.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ struct InputFile {
   bool operator==(const InputFile&) const = default;
 };
 
-/// Records all documents and tables read on this thread during its lifetime. If one exists within another, the inner one records
-/// them and passes them on with note().
+/// Records all files that are read in this thread while the object exists. If objects are nested, the inner one records a file and passes
+/// it on to the outer one.
 class InputFiles {
 public:
   InputFiles();
@@ -34,7 +34,7 @@ private:
   InputFiles* outer_;
 };
 
-/// Reports that `text` was read from `path`. Called by readers.
+/// Records in the current InputFiles, if there is one, that `text` was read from `path`. Called by all readers.
 void note_input(const std::string& path, const std::string& text, bool is_record);
 
 /// Returns the checksum of the file's present content; "" if it cannot be read.

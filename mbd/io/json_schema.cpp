@@ -17,8 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Limits apply to numbers and the pattern to texts, so that an editor names the violated one. With "anyOf" it could only report that no
-// alternative fits.
+// Returns the schema of a number with a unit. Limits apply to numbers and the pattern to texts in one schema, so that an editor names the
+// violated rule. With "anyOf" it could only report that no alternative fits.
 Json quantity(const Field& field, const std::string& unit, const char* number = "number") {
   Json schema{{"type", {number, "string"}}};
   if (std::isfinite(field.minimum)) schema[field.is_minimum_excluded ? "exclusiveMinimum" : "minimum"] = field.minimum;
@@ -27,7 +27,8 @@ Json quantity(const Field& field, const std::string& unit, const char* number = 
   return schema;
 }
 
-// Permits only the keys of `properties`. The impossible value makes editors mark the unknown key; with "false" they mark the whole table.
+// Refuses keys that are not in `properties`. An impossible value is demanded of them, so that editors mark the key; with "false" they would
+// mark the whole table.
 void close(Json& schema) { schema["additionalProperties"] = {{"const", "a field that this table has"}}; }
 
 Json list_of(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
@@ -83,7 +84,7 @@ const Described& common_fields() {
   return common;
 }
 
-// Adds the keys by which a file changes what it extends.
+// Adds the keys `unset` and `replace`, by which a file changes the entries that it inherits.
 void add_merging(Json& properties) {
   properties["unset"] = list_of(text());
   properties["unset"]["description"] = "inherited keys that are dropped";
@@ -106,7 +107,7 @@ Json entry_schema(const Described& kind, bool has_kind) {
 
 Json parameter_value() { return {{"type", {"number", "string"}}, {"pattern", "^\\s*([-+]?[0-9.]|=)"}}; }
 
-// Adds keys that are expanded before reading: `repeat` of entries and parts.
+// Adds the keys that are expanded before fields are read: `repeat` of entries, and `repeat` and `parameters` of parts.
 void add_writing_out(Json& properties, const std::string& array) {
   const auto& repeated = repeated_arrays();
   if (std::find(repeated.begin(), repeated.end(), array) == repeated.end()) return;
@@ -138,8 +139,8 @@ Json parameters_schema() {
           {"additionalProperties", std::move(full)}};
 }
 
-// Returns the meanings of a field of several kinds: "stiffness [N/m] (tie, bushing); stiffness, turning [N m] (gear)". Kinds are omitted if
-// all of them share one meaning.
+// Returns the descriptions of one field in several kinds: "stiffness [N/m] (tie, bushing); stiffness, turning [N m] (gear)". The kinds are
+// left out if the description is the same for all.
 std::string meanings(const std::vector<std::pair<std::string, std::string>>& docs, std::size_t all) {
   std::string text;
   for (std::size_t i = 0; i < docs.size(); ++i) {
@@ -155,8 +156,8 @@ std::string meanings(const std::vector<std::pair<std::string, std::string>>& doc
   return text;
 }
 
-// Schema of entries of several kinds. Conditions select the schema of the entry's kind, so that errors are reported at their line. All
-// fields are also listed under "properties", because editors do not complete from conditions.
+// Returns the schema of entries of several kinds. Conditions select the schema of the entry's kind, so that an editor reports errors at
+// their line. All fields are listed again under "properties", because editors do not complete keys from conditions.
 Json entries_of_kinds(const std::string& role, const Json& definitions) {
   const std::string prefix = role + "_";
   std::vector<std::string> kinds;

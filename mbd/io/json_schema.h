@@ -9,7 +9,7 @@ namespace steplap {
 /// extend others must pass too, so no field except `name` is required.
 [[nodiscard]] std::string json_schema(const Catalogue& catalogue);
 
-/// Returns the schema of one field's value as JSON text, for other files that are read through field tables.
+/// Returns the schema for the value of one field as JSON text. Used for other kinds of file that are read through field tables.
 [[nodiscard]] std::string field_json_schema(const Field& field);
 
 } // namespace steplap

@@ -38,7 +38,7 @@ peak = 1.0
 duration = 1.0
 )";
 
-// Returns a permitted value of the field.
+// Returns a number within the field's range, as TOML.
 std::string number_for(const Field& field) {
   double value = 1.0;
   if (value < field.minimum || (value == field.minimum && field.is_minimum_excluded)) value = field.minimum + 1.0;
@@ -46,7 +46,7 @@ std::string number_for(const Field& field) {
   return number_text(value);
 }
 
-// Returns a sample value as TOML; "" if none can be made up.
+// Returns a sample value for the field as TOML; "" if there is none for its type. `index` makes values different.
 std::string value_for(const Field& field, int index) {
   switch (field.type) {
   case FieldType::number: return number_for(field);
@@ -78,7 +78,7 @@ bool is_required(const ElementKind& kind, const std::string& name) {
   return field && field->is_required;
 }
 
-// Returns TOML lines that select among alternatives of a kind: none, and each value of each choice and switch.
+// Returns variants of the sample as TOML lines: without any line, and one for each value of each choice and each switch set to true.
 std::vector<std::string> choices_of(const ElementKind& kind) {
   std::vector<std::string> list{""};
   for (const Field& field : kind.fields.fields()) {
@@ -89,7 +89,7 @@ std::vector<std::string> choices_of(const ElementKind& kind) {
   return list;
 }
 
-// Returns TOML lines with optional numbers: without any, with each one alone, with all.
+// Returns variants of the optional numbers as TOML lines: none, each one alone, and all.
 std::vector<std::string> extras_of(const ElementKind& kind) {
   std::vector<std::string> list{""};
   std::string all;
@@ -102,7 +102,7 @@ std::vector<std::string> extras_of(const ElementKind& kind) {
   return list;
 }
 
-// Replaces the number in a name such as "edge_force_3" by N.
+// Replaces the number in a channel name such as "edge_force_3" by N.
 std::string general_name(std::string name) {
   for (std::size_t i = 1; i < name.size(); ++i) {
     if (std::isdigit(static_cast<unsigned char>(name[i])) == 0 || name[i - 1] != '_') continue;
@@ -122,14 +122,14 @@ void enter(const Channel& channel, const std::string& name, std::vector<KindChan
   if (std::find(known->units.begin(), known->units.end(), channel.unit) == known->units.end()) known->units.push_back(channel.unit);
 }
 
-// Adds the channels of the system that belong to `owner`, without those of markers inside it ("owner.a.x").
+// Adds the channels of the system whose names begin with `owner`, except those of its markers ("owner.a.x").
 void enter_all(const System& system, const std::string& owner, std::vector<KindChannel>& list) {
   for (const Channel& channel : system.channels)
     if (channel.name.starts_with(owner + ".") && channel.name.find('.', owner.size() + 1) == std::string::npos)
       enter(channel, general_name(channel.name.substr(owner.size() + 1)), list);
 }
 
-// Adds the channels of elements of this kind in a model. Throws ModelError if it is not valid.
+// Compiles a model and adds the channels of its elements of this kind. Throws ModelError if the model is invalid.
 void enter_scene(const std::string& text, const Catalogue& catalogue, const std::string& kind, std::vector<KindChannel>& list) {
   const std::unique_ptr<System> system = compile(parse_model(text, "example.toml", catalogue));
   for (std::size_t e = 0; e < system->element_names.size(); ++e)
@@ -139,7 +139,7 @@ void enter_scene(const std::string& text, const Catalogue& catalogue, const std:
 void try_scene(const std::string& text, const Catalogue& catalogue, const std::string& kind, std::vector<KindChannel>& list) {
   try {
     enter_scene(text, catalogue, kind, list);
-  } catch (const ModelError&) { // incompatible values; other samples work
+  } catch (const ModelError&) { // values that do not fit together; other samples are valid
   }
 }
 

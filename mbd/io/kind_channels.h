@@ -1,5 +1,5 @@
-// Finds the channels of each element kind by compiling its example and sample elements, with each of their choices and each optional field.
-// So the list always agrees with the results of a run.
+// Finds the channels of each element kind by compiling sample elements: its example, with each choice and each optional field. The list
+// therefore always agrees with the results of a run.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -15,14 +15,14 @@ struct KindChannel {
 
 /// Returns the channels in the order in which elements create them, optional ones last; empty if the kind has none.
 [[nodiscard]] std::vector<KindChannel> channels_of_kind(const Catalogue& catalogue, const ElementKind& kind);
-/// Returns the channels of bodies; below: optional channels of markers and of the whole model.
+/// Returns the channels of bodies. The functions below return optional channels of markers and of the whole model.
 [[nodiscard]] std::vector<KindChannel> channels_of_bodies(const Catalogue& catalogue);
 [[nodiscard]] std::vector<KindChannel> channels_of_markers(const Catalogue& catalogue);
 [[nodiscard]] std::vector<KindChannel> channels_of_whole(const Catalogue& catalogue);
 
-/// Returns a whole model of two boxes 'a' and 'b' with the example of the kind, as TOML.
+/// Returns a complete model in TOML: two boxes 'a' and 'b' with the example of the kind.
 [[nodiscard]] std::string example_model(const ElementKind& kind);
-/// Returns the tables of the example up to the first element of the kind: the element and what it needs.
+/// Returns the tables of the example up to the first element of the kind, that is, this element and what it refers to.
 [[nodiscard]] std::string example_text(const ElementKind& kind);
 
 /// Returns the units as text: "N or N m"; "-" if there are none.

@@ -1,4 +1,4 @@
-// Load cases of a model: table [[case]]. A case is a run of the same model with other values. mbd/run/load_cases.h runs all of them.
+// Load cases of a model: table [[case]]. Each case is a run of the same model with other values. mbd/run/load_cases.h runs all cases.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -13,7 +13,7 @@ struct LoadCase : TableObject {
   std::string source;                ///< document that requires the load, with its edition
   std::vector<std::string> criteria; ///< patterns of the names of [[acceptance]] that apply; empty: all
 
-  /// Returns the overrides of this case; `gravity` is that of the model, m/s².
+  /// Returns the changes of this case as "path=value"; `gravity` is that of the model, m/s², to which `pull` is added.
   [[nodiscard]] std::vector<std::string> overrides(const Vec2& gravity) const;
 };
 

@@ -7,7 +7,7 @@ namespace steplap {
 
 namespace {
 
-// A kind of part with the field that gives its size; "": it has none.
+// A kind of part, with the name of the field that gives its size; "": its size is fixed.
 struct Part {
   std::string name, size_field;
 };

@@ -12,7 +12,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// Removes the part before the next point from the path and returns it.
+// Removes the part before the first point from the path and returns it.
 std::string take_segment(std::string& path) {
   const std::size_t point = path.find('.');
   std::string segment = path.substr(0, point);
@@ -61,14 +61,14 @@ private:
     return node;
   }
 
-  // Removes lines and columns, which have no meaning for a command line.
+  // Removes locations, since a value from the command line is in no file.
   static Node stripped(Node node) {
     node.line = node.column = node.key_line = node.key_column = 0;
     for (Node& child : node.children) child = stripped(std::move(child));
     return node;
   }
 
-  // Sets a parameter of the model. New parameters are refused, because nothing would use them.
+  // Sets a parameter of the model. A new parameter is refused, because no formula would use it.
   void set_parameter() {
     Node* const table = document_.root.find("parameters");
     Node* const parameter = table ? table->find(path_) : nullptr;
@@ -76,7 +76,7 @@ private:
       path_.clear();
       return set_below(*parameter, "value");
     }
-    if (parameter) { // the name of a part's parameter contains points: "wagon 2.wall"
+    if (parameter) { // parameters of parts have points in their names: "wagon 2.wall"
       const std::string name = std::exchange(path_, "");
       return set_below(*table, name);
     }
@@ -118,7 +118,7 @@ private:
     set_below(*best, take_segment(path_));
   }
 
-  // Sets `key` of a table, or the item below it that the rest of the path names.
+  // Sets the value at `key` of the table `parent`, or the item below it to which the rest of the path leads.
   void set_below(Node& parent, const std::string& key) {
     Node* child = child_of(parent, key);
     if (!path_.empty()) {

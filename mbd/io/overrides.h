@@ -4,7 +4,6 @@
 // names may contain blanks and points. Keys of inline tables and items of lists follow after further points ("element.rope.a.angle",
 // "gravity.1"). The value is read as TOML ("1e-4", "[1, 2]", "true") or else as a string ("48 t"). The bare word `unset` removes the key,
 // so that its default applies; to set that text, write it in quotes.
-// files give, so that its default holds; the text of that name is written in quotes.
 #pragma once
 
 #include "mbd/io/document.h"
@@ -18,7 +17,8 @@ struct TopLevelNames {
   std::vector<std::string> arrays; ///< body, element, ...
 };
 
-/// Applies "path=value". A path that does not exist is added to document.problems. The reader checks whether the last key is a field.
+/// Applies one override. Errors, such as a path that does not exist, are added to document.problems. Whether the last key is a field of its
+/// entry is checked later, when fields are read.
 void apply_override(Document& document, const std::string& assignment, const TopLevelNames& names);
 
 } // namespace steplap

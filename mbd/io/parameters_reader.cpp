@@ -13,7 +13,8 @@ namespace steplap {
 
 namespace {
 
-// Checks the name of a parameter; for a part's parameter such as "wagon 2.wall" the text after the part names.
+// Returns true if the text is a valid name of a parameter. For a part's parameter, such as "wagon 2.wall", the text after the names of
+// parts is checked.
 bool is_name(const std::string& whole) {
   if (whole.find_first_of("{}[]") != std::string::npos) return false;
   const std::string text = whole.substr(whole.rfind('.') + 1);
@@ -38,8 +39,8 @@ std::string said(const std::array<double, 3>& powers) {
 
 bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
-// Calls `visit(node, path, likeness)` for every value below a table or a named entry. `path` is as in model_path.h. `likeness` is equal for
-// the same field of entries of the same kind.
+// Calls visit(node, path, likeness) for every value of the document. `path` is the value's path as in model_path.h. `likeness` is a text
+// that is equal for the same field in entries of the same kind.
 class Walk {
 public:
   using Visit = std::function<void(const Node&, const std::string&, const std::string&)>;
@@ -60,7 +61,7 @@ private:
       in_value(child, array + "." + name + "." + child.key, alike + child.key, array == "element" ? name + "." + child.key : "");
   }
 
-  // `marker`: name of the marker for which an inline table stands, "" if none is allowed here.
+  // Visits one value with all values inside. If `marker` is not empty, an inline table is a marker with this name.
   void in_value(const Node& node, const std::string& path, const std::string& alike, const std::string& marker) {
     if (node.is_table()) {
       const std::string own = entry_name(node);
@@ -104,7 +105,7 @@ ParametersReader::ParametersReader(const Node& root, std::vector<Diagnostic>& pr
   }
   for (const Node& entry : table->children) read_entry(entry);
   is_resolved_.resize(parameters_.entries.size());
-  // All names must be known before formulas are read.
+  // Formulas are read after all names are known, since they may refer to later parameters.
   for (std::size_t i = 0; i < parameters_.entries.size(); ++i) {
     Parameter& parameter = parameters_.entries[i];
     if (is_wrong_[i] || parameter.text.empty() || parameter.text.front() != '=') continue;
@@ -190,7 +191,7 @@ void ParametersReader::read_value(const Node& node, Parameter& parameter, double
     turns_.back() = Turns::radians;
 }
 
-// Reads a range. Its ends have the unit of the value, which is checked later by check_ranges().
+// Reads a range. Its ends must have the unit of the parameter's value, which check_ranges() checks later.
 void ParametersReader::read_range(const Node& range, Parameter& parameter) {
   const auto complain = [&](const Node& at, const std::string& message) {
     add(at.where(), "'range' of parameter '" + parameter.name + "': " + message);
@@ -237,7 +238,7 @@ std::array<double, 3> ParametersReader::dimension_exponents(const ParameterFormu
   return formula.formula.dimension(units).powers;
 }
 
-// Evaluates a formula after those that it needs. Returns false if any is invalid.
+// Evaluates the formula of a parameter, after those of the parameters that it uses. Returns false if one of them is invalid.
 bool ParametersReader::resolve(std::size_t index, std::vector<std::size_t>& chain) {
   Parameter& parameter = parameters_.entries[index];
   if (is_wrong_[index]) return false;
@@ -280,7 +281,7 @@ void ParametersReader::check_ranges() {
   }
 }
 
-// Reports a mix of turns and radians: "10 rad/s" is not a frequency of 10 Hz, although both are 1/s.
+// Returns an error if the formula mixes turns and radians: both are 1/s, but 10 rad/s is not a frequency of 10 Hz. "" if it does not.
 std::string ParametersReader::turns_problem(const ParameterFormula& formula, const std::string& unit) const {
   const Turns wanted = unit == "Hz" ? Turns::turns : unit == "rad/s" ? Turns::radians : Turns::none;
   if (wanted == Turns::none) return "";
@@ -333,7 +334,8 @@ std::string ParametersReader::text_of(const Node& node) const {
 
 Parameters ParametersReader::parameters(const Node& root, const Model& model) const {
   Parameters result = parameters_;
-  // Results for paths that are alike, because finding an entry by its name is slow in large models.
+  // Whether a field can be set by path is determined once for all entries of a kind, because finding an entry by its name is slow in large
+  // models.
   std::unordered_map<std::string, bool> settable;
   const Walk walk(root, [&](const Node& node, const std::string& path, const std::string& alike) {
     const auto found = found_.find(&node);

@@ -1,4 +1,4 @@
-// Reads [parameters] of a document, and formulas of parameters in fields that need a number: "= 2*wall + bore".
+// Reads [parameters] of a document, and evaluates formulas of parameters, "= 2*wall + bore", in other fields.
 #pragma once
 
 #include "mbd/io/document.h"
@@ -14,21 +14,21 @@ namespace steplap {
 /// Returns true if the value is a text that begins with '='.
 [[nodiscard]] bool is_formula(const Node& node);
 
-/// Reads the table, and evaluates formulas when fields contain them.
+/// Reads the table [parameters], and evaluates formulas as fields that contain them are read.
 class ParametersReader {
 public:
-  /// Reads [parameters] of `root`, if there is one. Appends problems.
+  /// Reads [parameters] of `root`, if there is one, and appends errors to `problems`.
   ParametersReader(const Node& root, std::vector<Diagnostic>& problems);
 
-  /// Returns the value of the formula in `node` in a field's `unit` ("*": any). On error `problem` is set, except if the formula needs a
-  /// parameter that was already reported as wrong: then is_excused() is true.
+  /// Returns the value of the formula in `node` for a field with this `unit` ("*": any). On error `problem` of the result is set. If the
+  /// formula uses a parameter whose error was reported already, `problem` stays empty and is_excused() becomes true.
   [[nodiscard]] Quantity value(const Node& node, const std::string& unit);
-  /// Returns the value as text with its unit, for fields that accept one: "0.024 m".
+  /// Returns the value of a formula that value() evaluated, as text with its unit: "0.024 m". For fields that accept such a text.
   [[nodiscard]] std::string text_of(const Node& node) const;
-  /// Returns true if the last formula has no value because a parameter that it needs is wrong.
+  /// Returns true if the last formula has no value because a parameter in it is wrong, which was reported already.
   [[nodiscard]] bool is_excused() const { return is_excused_; }
 
-  /// Returns all parameters and the formulas evaluated by value(). `root` is their document, `model` the model made from it.
+  /// Returns all parameters, and the formulas that value() evaluated. `root` is their document, `model` the model read from it.
   [[nodiscard]] Parameters parameters(const Node& root, const Model& model) const;
 
 private:
@@ -51,7 +51,7 @@ private:
   Parameters parameters_;
   std::unordered_map<std::string, std::size_t> by_name_; ///< index in entries, by name
   enum class Turns { none, turns, radians };
-  std::vector<Turns> turns_; ///< per entry in 1/s: turns or radians, as its unit is written
+  std::vector<Turns> turns_; ///< for each entry with unit 1/s, whether its unit means turns or radians
   std::vector<bool> is_wrong_, is_resolved_;
   std::unordered_map<const Node*, Found> found_;
   bool is_excused_ = false;

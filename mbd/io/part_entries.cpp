@@ -27,7 +27,7 @@ void prefix_texts(Node& node, const std::string& prefix) {
   for (Node& child : node.children) prefix_texts(child, prefix);
 }
 
-// Prefixes names in the steps of an action: elements, signals and actions of its own file.
+// Adds the prefix to the names of elements, signals and actions in the steps of an action.
 void prefix_steps(Node& node, const std::string& prefix) {
   for (Node& child : node.children) prefix_steps(child, prefix);
   if (node.type != Node::Type::text) return;
@@ -52,7 +52,7 @@ bool is_presentation(const std::string& array) { return array == "channel" || ar
 
 } // namespace
 
-// Properties of a kind, whatever array contains its entries.
+// Properties of a kind of entry that the conversion needs.
 struct PartEntries::KindFacts {
   const FieldTable* fields = nullptr;
   std::shared_ptr<Element> made;            // null for signals
@@ -149,7 +149,7 @@ void PartEntries::note_placing_joints(const Node& root, const PartPlacement& par
 }
 
 bool PartEntries::is_placed_by_joint(const Node& body, const Node& root, const PartPlacement& part) const {
-  const std::string name = entry_name(body); // the prefixed name
+  const std::string name = entry_name(body); // the name with the prefix of the part
   if (placed_.count(name) > 0) return true;
   const Node* const markers = root.find("marker");
   if (!markers || !markers->is_array_of_tables()) return false;
@@ -189,7 +189,8 @@ void PartEntries::put_marker(Node& marker, const PartPlacement& part, bool is_wh
   if (!has_angle && frame.is_turned()) marker.children.push_back(frame.angle_node("angle", marker));
 }
 
-// Converts a reference: the name of a marker or body, or an inline marker.
+// Converts a reference to a marker or body, or an inline marker. If the part has a position, a reference to the ground becomes a marker at
+// the part's origin.
 void PartEntries::put_reference(Node& node, const PartPlacement& part) const {
   if (node.is_table()) {
     if (Node* const name = node.find("name")) prefix_texts(*name, part.prefix);
@@ -221,7 +222,8 @@ void PartEntries::put_fields(Node& entry, const KindFacts& facts, const PartPlac
   }
 }
 
-// Moves what a table draws on the ground, such as a road, with its part.
+// Moves an entry that is drawn on the ground, such as a road, with its part. An error is added if the part is rotated, since such entries
+// are horizontal.
 void PartEntries::put_on_ground(Node& entry, const KindFacts& facts, const PartPlacement& part, bool is_whole) {
   const Field* const place = facts.fields->find("at");
   if (!place || place->type != FieldType::vec2) return;
@@ -265,7 +267,7 @@ void PartEntries::put_field(Node& child, const Field& field, const KindFacts& fa
                                             "give it frame = \"body\", and its marker the axes"});
 }
 
-// Prefixes names in formulas and patterns of channels and elements.
+// Adds the prefix to names in formulas, and to patterns of channels and elements.
 void PartEntries::put_presentation(const std::string& array, Node& entry, const PartPlacement& part, bool is_whole) const {
   const auto prefixed = [&](const char* key) {
     if (Node* const node = entry.find(key)) prefix_texts(*node, part.prefix);
@@ -279,7 +281,7 @@ void PartEntries::put_presentation(const std::string& array, Node& entry, const 
   } else {
     prefixed("channel");
     prefixed("element");
-    Node* const event = entry.find("event"); // the pattern covers all elements of the part, not of the model
+    Node* const event = entry.find("event"); // without `element`, the event of any element of the part is meant
     if (!is_whole || !event || entry.find("element")) return;
     entry.children.push_back(text_at("element", *event, part.prefix + "*"));
   }

@@ -1,4 +1,4 @@
-// Converts an entry of a part's file into one of the model: with the model's names, at the position of the part.
+// Converts an entry of a part's file into an entry of the model: with the names of the model, and at the position of the part.
 #pragma once
 
 #include "mbd/io/part_frame.h"
@@ -10,34 +10,34 @@
 
 namespace steplap {
 
-/// Placement of one part; default: of the model itself.
+/// Name prefix and position of one part; the default values are those of the model itself.
 struct PartPlacement {
   std::string prefix;                ///< prefix of its names: "wagon 2."; "" for the model
   PartFrame frame;                   ///< its coordinate frame
   const std::string* file = nullptr; ///< name of its file
 };
 
-/// Returns the formula with the names of a part's entries prefixed, except names for which `stays` returns true.
+/// Returns a formula from a part's file with the prefix added to all names in it, except names for which `stays` returns true.
 [[nodiscard]] std::string with_prefixed_names(const std::string& formula, const std::string& prefix,
                                               bool (*stays)(const std::string& name) = nullptr);
-/// Prefixes names in all formulas of a node.
+/// Adds the prefix to all names in the formulas of a node.
 void prefix_formulas(Node& node, const std::string& prefix);
 
 class PartEntries {
 public:
   PartEntries(const Catalogue& catalogue, std::vector<Diagnostic>& problems);
 
-  /// Returns true if a part may contain entries of tables with that name, of the kernel or of elements.
+  /// Returns true if the file of a part may contain [[array]] entries.
   [[nodiscard]] bool are_known(const std::string& array) const;
   [[nodiscard]] bool are_of_model_alone(const std::string& array) const;
-  /// Returns all names for which are_known() is true.
+  /// Returns all names of arrays for which are_known() is true.
   [[nodiscard]] std::vector<std::string> arrays() const;
 
-  /// Records the bodies that joints of the file place relative to another body. Such a body without a pose of its own is not placed by its
-  /// part. Call it for a file before anything in it or its parts is converted.
+  /// Records which bodies are placed by joints of this file. The part does not place these bodies, unless they have a pose of their own.
+  /// Must be called for a file before any entry of it, or of its parts, is converted.
   void note_placing_joints(const Node& root, const PartPlacement& part);
-  /// Returns the entry of [[array]] in the file `root` as an entry of the model. `is_whole`: adds values that follow from the position of
-  /// the part; otherwise the entry changes another one and only its own keys are converted.
+  /// Converts one entry of [[array]] in the file `root` into an entry of the model. `is_whole`: values that the entry does not give, but
+  /// that follow from the position of the part, are added. If false, the entry changes another one, and only its own keys are converted.
   [[nodiscard]] Node made(const std::string& array, const Node& entry, const Node& root, const PartPlacement& part, bool is_whole = true);
 
 private:
@@ -59,7 +59,7 @@ private:
   std::vector<Diagnostic>& problems_;
   Kinds elements_, signals_, tables_;
   std::vector<std::string> of_model_alone_;
-  std::unordered_set<std::string> placed_; ///< bodies and markers of such joints, by the model's names
+  std::unordered_set<std::string> placed_; ///< bodies and markers of joints that place bodies, by their names in the model
 };
 
 } // namespace steplap

@@ -15,7 +15,7 @@ namespace {
 
 bool is_zero(const PlacedNumber& number) { return number.is_number() && number.value == 0.0; }
 
-// Returns the number as an operand of a formula.
+// Returns the number as text for an operand of a formula, in brackets if it is a formula.
 std::string operand(const PlacedNumber& number, const std::string& unit) {
   if (!number.is_number()) return "(" + number.formula + ")";
   const std::string text = number_text(number.value);
@@ -23,7 +23,7 @@ std::string operand(const PlacedNumber& number, const std::string& unit) {
   return number.value < 0.0 ? "(" + text + ")" : text;
 }
 
-// Returns the number as first operand of a sum, which needs no brackets since sums are evaluated from the left.
+// Returns the number as text for the first operand of a sum. It needs no brackets, since sums are evaluated from the left.
 std::string summand(const PlacedNumber& number, const std::string& unit) {
   return number.is_number() ? operand(number, unit) : number.formula;
 }
@@ -41,7 +41,7 @@ void set(Node& node, const PlacedNumber& number) {
   else node.scalar = "= " + number.formula;
 }
 
-// Returns the value of a formula without names, if it has the unit.
+// Returns the value of a formula without names; nothing if it has another unit.
 std::optional<double> value_without_operands(const Node& node, const std::string& unit) {
   try {
     const Formula formula(node.text().substr(node.text().find('=') + 1), "", {});

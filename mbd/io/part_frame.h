@@ -1,9 +1,9 @@
-// Coordinate frame of a part, applied to values of a document. Results are numbers if frame and value are numbers, and formulas otherwise.
+// Coordinate frame of a part, applied to values of a document. A result is a number if frame and value are numbers, otherwise a formula.
 //
 // The frame has origin (x, y) and angle θ in the frame of the file that contains the part. A point p of the part's file then lies at
 //   x + (cos θ · p_x − sin θ · p_y),   y + (sin θ · p_x + cos θ · p_y)
-// in this order of operations, for numbers and formulas. Without angle it is x + p_x, y + p_y. Frames of nested parts are composed in the
-// same way, and their angles added.
+// in this order of operations, for numbers and formulas. Without angle the position is x + p_x, y + p_y. Frames of nested parts are
+// composed in the same way, and their angles added.
 #pragma once
 
 #include "mbd/io/toml_text.h"
@@ -24,7 +24,7 @@ struct PlacedNumber {
   [[nodiscard]] bool is_number() const { return formula.empty(); }
 };
 
-/// Reads a number, a number with its unit, or a formula. Returns nothing for anything else, which its reader reports.
+/// Reads a number, a number with its unit, or a formula. Returns nothing for any other value; the reader of the field reports that error.
 [[nodiscard]] std::optional<PlacedNumber> placed_number(const Node& node, const std::string& unit);
 
 class PartFrame {
@@ -34,18 +34,18 @@ public:
   /// Creates a frame given relative to the frame `outer`.
   PartFrame(const PartFrame& outer, const PlacedNumber& x, const PlacedNumber& y, const PlacedNumber& angle);
 
-  /// Returns true if the frame differs from the model's.
+  /// Returns true if the frame has a position or angle of its own, that is, differs from the model's frame.
   [[nodiscard]] bool is_placed() const { return is_placed_; }
   [[nodiscard]] bool is_turned() const { return is_turned_; }
 
-  /// Transforms a point [x, y], or all points in nested lists. Other values stay unchanged.
+  /// Transforms a point [x, y], or all points in nested lists, to the frame of the model. Other values stay unchanged.
   void place_points(Node& node) const;
-  /// Rotates a vector in `unit`.
+  /// Rotates the components of a vector with this unit into the axes of the model.
   void turn_vector(Node& node, const std::string& unit) const;
-  /// Adds the frame's angle.
+  /// Adds the angle of the frame to an angle.
   void turn_angle(Node& node) const;
 
-  /// Return its origin and angle as nodes at the location of `where`.
+  /// Return the origin and the angle of the frame as nodes with this key, at the location of `where`.
   [[nodiscard]] Node origin_node(const std::string& key, const Node& where) const;
   [[nodiscard]] Node angle_node(const std::string& key, const Node& where) const;
 

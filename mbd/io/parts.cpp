@@ -24,20 +24,20 @@ namespace {
 
 constexpr std::size_t k_deepest = 32; // nested parts; deeper nesting is an error
 
-// Entry with the name of something in a part; it is merged over that.
+// Entry of an including file whose name refers to an entry of a part. It is merged into that entry.
 struct Overlay {
   std::string array;
   Node entry;
 };
 
-// File of a part or of the model, with its repetitions expanded.
+// File of a part or of the model, after expansion of its repetitions.
 struct PartFile {
   Node root;
   const std::string* name = nullptr;
   std::vector<Overlay> overlays; // removed from root
 };
 
-// Removes entries of `root` that change something in its parts, and returns them.
+// Removes the entries of `root` that change entries of its parts, and returns them.
 std::vector<Overlay> taken_overlays(Node& root) {
   std::vector<Overlay> overlays;
   const Node* const parts = root.find("part");
@@ -91,7 +91,7 @@ private:
     add(at.where(), "parts and repetitions make more than " + std::to_string(k_most_entries) + " entries: a model may not have so many");
   }
 
-  // Returns the [[part]] array of a file, empty if there is none.
+  // Returns the [[part]] array of a file; an empty one if there is none or if it is invalid.
   Node taken_parts(const Node& root) {
     const Node* const parts = root.find("part");
     Node none;
@@ -102,7 +102,7 @@ private:
     return none;
   }
 
-  // Returns the same text for the same file under any of its names.
+  // Returns a text that is equal for all names of the same file.
   const std::string& identity_of(const std::string& file) {
     const auto [known, is_new] = identities_.emplace(file, file);
     if (!is_new) return known->second;
@@ -136,10 +136,10 @@ private:
   PartEntries entries_;
   std::map<std::string, std::unique_ptr<PartFile>> files_;  // by identity; null: could not be read
   std::unordered_map<std::string, std::string> identities_; // identity by file name, because asking the file system is slow
-  std::vector<std::string> files_on_the_way_;               // identities from the model's file to that of the present part
+  std::vector<std::string> files_on_the_way_;               // chain of included files from the model's to the present part's, by identity
   std::vector<Node> added_;                                 // arrays of the parts' entries, and their [parameters]
-  std::unordered_map<std::string, std::size_t> made_at_;    // index in the array of added_ by name: "body wagon 2.box"
-  std::unordered_set<std::string> removed_;                 // entries among these that an including file removed
+  std::unordered_map<std::string, std::size_t> made_at_;    // index in the array of added_, by name: "body wagon 2.box"
+  std::unordered_set<std::string> removed_;                 // entries of added_ that an including file removed
   std::unordered_set<std::string> reported_;
   std::size_t made_ = 0;
   bool is_too_many_ = false;
@@ -177,7 +177,7 @@ bool PartWriter::has_usable_name(const Node& part) {
   return name && problems_.size() == before;
 }
 
-// Returns a position value in the frame of the including file; nothing if it is wrong, which is then reported.
+// Returns x, y or angle of a part, relative to the including file. Reports an error and returns nothing if the value is invalid.
 std::optional<PlacedNumber> PartWriter::place_value(const Node& part, const char* key, const char* unit, const PartPlacement& outer) {
   const Node* const given = part.find(key);
   if (!given) return PlacedNumber{};
@@ -194,7 +194,7 @@ std::optional<PlacedNumber> PartWriter::place_value(const Node& part, const char
   return std::nullopt;
 }
 
-// Returns true if including the file is not circular.
+// Returns true if the file may be included here. Reports an error if it would include itself, or if parts are nested too deeply.
 bool PartWriter::is_free_to_take(const Node& file, const std::string& path) {
   const std::string id = identity_of(path);
   if (const auto again = std::find(files_on_the_way_.begin(), files_on_the_way_.end(), id); again != files_on_the_way_.end()) {
@@ -208,7 +208,7 @@ bool PartWriter::is_free_to_take(const Node& file, const std::string& path) {
   return false;
 }
 
-// Returns the file of the part; null if it cannot be read, which is then reported.
+// Returns the file of the part, read at its first use. Reports an error and returns null if it cannot be read.
 const PartFile* PartWriter::file_of(const Node& part) {
   const Node* const file = part.find("file");
   const std::string subject = "part '" + entry_name(part) + "'";
@@ -228,7 +228,7 @@ const PartFile* PartWriter::file_of(const Node& part) {
     auto read = std::make_unique<PartFile>();
     read->root = load_into(document_, path, file->where());
     read->name = read->root.file;
-    std::size_t made = 0; // not counted here, but when parts are written
+    std::size_t made = 0; // not used: entries are counted each time that a part is expanded
     write_out_repetitions(read->root, made, problems_);
     read->overlays = taken_overlays(read->root);
     found->second = std::move(read);
@@ -248,7 +248,7 @@ void PartWriter::take(const Node& part, const PartPlacement& outer) {
   place.frame = PartFrame(outer.frame, *x, *y, *angle);
   place.file = file->name;
   document_.parts.push_back({place.prefix, file->name, part.where()});
-  if (++made_ > k_most_entries) return add_too_many(part); // parts without entries count too: nested doubling grows exponentially
+  if (++made_ > k_most_entries) return add_too_many(part); // counted although it may be empty: nested parts multiply exponentially
   write_parameters(file->root, part, outer, place);
   files_on_the_way_.push_back(identity_of(*file->name));
   write(*file, place);
@@ -336,12 +336,12 @@ Node& PartWriter::output(const Node& array) {
   return made;
 }
 
-// Appends the array after the model's own entries.
+// Appends the entries of the array, except removed ones, to those of the model.
 void PartWriter::append(Node array) {
   Node* own = document_.root.find(array.key);
   std::vector<Node> entries = std::exchange(array.children, {});
   if (!own) own = &document_.root.children.emplace_back(array);
-  if (own->type != array.type) return; // its reader reports the wrong type
+  if (own->type != array.type) return; // the reader reports the wrong type
   for (Node& entry : entries)
     if (removed_.empty() || removed_.count(array.key + " " + entry_name(entry)) == 0) own->children.push_back(std::move(entry));
 }
@@ -382,7 +382,7 @@ void PartWriter::write_parameters(const Node& root, const Node& part, const Part
   }
 }
 
-// Checks that a number with a unit replaces one of the same dimension. For formulas the reader checks it.
+// Checks that the value given for a part's parameter has the dimension of the value that it replaces. The reader checks this for formulas.
 void PartWriter::check_given(const Node& own, const Node& given, const Node& part) {
   const Node* const usual = own.is_table() ? own.find("value") : &own;
   const std::string subject = "parameter '" + own.key + "' of part '" + entry_name(part) + "'";
@@ -420,7 +420,7 @@ Node PartWriter::parameter_of(const Node& own, const Node* given, const PartPlac
   return made;
 }
 
-// Returns a message in a form common to all copies: names without part prefix, no digits.
+// Returns the message without digits, and with names without the prefixes of parts. Messages about copies of one entry then become equal.
 std::string without_instance(const std::string& whole) {
   const std::string message = whole.substr(0, whole.find(" (did you mean")); // only the first of many messages has a suggestion
   std::string result;
@@ -437,7 +437,7 @@ std::string without_instance(const std::string& whole) {
   return result;
 }
 
-// Returns text such as "part 'buffer', wagon.toml:8:1, of part 'wagon 2', train.toml:12:1".
+// Returns a text on how the part was included, innermost part first: "part 'buffer', wagon.toml:8:1, of part 'wagon 2', train.toml:12:1".
 std::string chain_text(const Document& document, const Document::Part& part) {
   const Document::Part* outer = nullptr;
   for (const Document::Part& other : document.parts) {
@@ -450,7 +450,7 @@ std::string chain_text(const Document& document, const Document::Part& part) {
   return "part '" + name + "', " + place + (outer ? ", of " + chain_text(document, *outer) : "");
 }
 
-// Returns the chain of parts that includes the location of a message, as text; "" if there is none.
+// Returns chain_text() for the part to whose file the message belongs; "" if it belongs to no part.
 std::string inclusion_chain(const Document& document, const Diagnostic& problem) {
   const Document::Part* found = nullptr;
   bool is_named = false;
@@ -518,7 +518,7 @@ void write_out_parts(Document& document, const Catalogue& catalogue) {
 
 void name_parts(std::vector<Diagnostic>& problems, const Document& document) {
   if (document.parts.empty() && !document.is_repeated) return;
-  std::map<std::string, std::size_t> first; // index in `kept` of the first of messages that are alike
+  std::map<std::string, std::size_t> first; // index in `kept` of the first message of those that are equal
   std::vector<Diagnostic> kept;
   std::vector<std::size_t> more;
   for (Diagnostic& problem : problems) {

@@ -31,17 +31,18 @@ struct PartEntry {
   [[nodiscard]] static const FieldTable& fields();
 };
 
-/// Reads the files of all parts, and expands parts and repetitions. Throws ModelError with all problems, including those found before.
+/// Reads the files of all parts, and expands parts and repetitions. Throws ModelError with all problems, including those found before this
+/// call.
 void write_out_parts(Document& document, const Catalogue& catalogue);
 
-/// Adds to each message about a part's file the parts through which it was included. Messages that several parts or repetitions have in
-/// common are kept once.
+/// Adds to each message about the file of a part how the part was included: "part 'buffer', wagon.toml:8:1". Messages that differ only by
+/// the part or the repetition are reduced to one.
 void name_parts(std::vector<Diagnostic>& problems, const Document& document);
 
-/// Effect of a part's position on a field of an element, signal or table, and whether its texts are names.
+/// Effect of a part's position on a field of an element, signal or table; `name`: the field's texts are names, which get the prefix.
 enum class PartTreatment { none, name, place, direction, fixed_axis };
 [[nodiscard]] PartTreatment part_treatment(const FieldTable& kind, const Field& field);
-/// Returns false for tables that concern the model as a whole and cannot be in a part.
+/// Returns false for tables that concern the model as a whole, and so cannot be in the file of a part.
 [[nodiscard]] bool can_stand_in_part(const TableKind& kind);
 
 } // namespace steplap

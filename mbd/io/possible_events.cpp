@@ -12,7 +12,7 @@ namespace {
 
 void add(EventKinds& kinds, EventKind kind) { kinds.set(static_cast<std::size_t>(kind)); }
 
-// Adds all transitions of a group. Modes are bit sets; all element kinds distinguish only the lowest six bits.
+// Adds the events of all possible changes of mode in a group. Modes are bit sets, of which element kinds use at most the lowest six bits.
 void add_transitions(const ForceGroup& group, EventKinds& kinds) {
   constexpr UnitMode k_modes = 64;
   for (UnitMode from = 0; from < k_modes; ++from)
@@ -60,7 +60,7 @@ EventKinds possible_events(const Model& model, const System& system, const std::
     try {
       const std::vector<std::string> no_channels;
       kinds |= events_of(*compile(all, &no_channels), element);
-    } catch (const ModelError&) { // the elements are never active together: any of them may have any event
+    } catch (const ModelError&) { // the elements cannot be active at the same time, so any event is taken as possible
       kinds.set();
     }
   }

@@ -1,4 +1,4 @@
-// Kinds of events that elements can have; criteria and actions that name others are refused.
+// Finds the kinds of events that elements can have. Criteria and actions that wait for other events are refused.
 #pragma once
 
 #include "mbd/base/event_kind.h"

@@ -16,7 +16,7 @@ namespace steplap {
 
 namespace {
 
-// Checks that a channel name cannot be confused with its surroundings in formulas and in trajectory.csv.
+// Refuses channel names that would be ambiguous in formulas or in trajectory.csv.
 void check_channel_name(const DefinedChannel& channel) {
   const std::string& name = channel.name;
   const bool has_control = std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; });
@@ -25,7 +25,7 @@ void check_channel_name(const DefinedChannel& channel) {
                    "channel: a 'name' has letters and no line breaks, no braces, no ']' at its end (there stands the unit)");
 }
 
-// Limit of a criterion: its field, its text, its value.
+// One limit of a criterion: name of its field, member with its text, member with its value.
 struct Limit {
   const char* field;
   std::string Criterion::*text;
@@ -51,7 +51,7 @@ void check_criterion(const Criterion& c) {
   if (is_bounded && !c.within_text.empty()) fail("within", "'within' bounds both sides: leave out 'at_least' and 'at_most'");
 }
 
-// Reads a limit. A number without unit is in the channel's unit.
+// Reads the text of a limit. A number without unit counts as being in the channel's unit.
 Quantity read_limit(const std::string& text, const std::string& unit) {
   Quantity bare;
   const auto [rest, status] = std::from_chars(text.data(), text.data() + text.size(), bare.value);
@@ -74,7 +74,7 @@ std::string list_of(const std::vector<std::string>& words) {
   return text;
 }
 
-// Compares patterns with the channels and events of the system.
+// Checks names and patterns against the channels and events of the system.
 class PresentationCheck {
 public:
   PresentationCheck(Model& model, const System& system)
@@ -93,7 +93,7 @@ public:
     return std::move(left_out_);
   }
 
-  // Throws the problems found so far and those of the criteria.
+  // Checks criteria only. Throws all problems found.
   void run_criteria() {
     for (Criterion& criterion : model_.criteria) check_criterion_on(criterion);
     if (!problems_.empty()) throw ModelError(std::move(problems_));
@@ -155,7 +155,7 @@ private:
     check_event(c);
   }
 
-  // Returns the problem with an event of matching elements; "" if they can have it.
+  // Returns an error if no element that matches `element` can have an event that matches `event`; otherwise "".
   std::string no_event(const std::string& element, const std::string& event) const {
     const EventKinds kinds = possible_events(model_, system_, element.empty() ? "*" : element);
     if ((kinds & event_kinds_matching(event)).any()) return "";
@@ -169,7 +169,7 @@ private:
     if (const std::string problem = no_event(c.element, c.event); !problem.empty()) complain(c, "event", problem);
   }
 
-  // Reports an action that waits for an impossible event, since it would never happen.
+  // Reports an action that waits for an event which its element cannot have.
   void check_action(const Action& action) {
     const auto event = event_text(action.when);
     if (!event) return;
@@ -205,7 +205,7 @@ private:
   const Trajectory written_, all_;
   const System& system_;
   std::vector<Diagnostic> problems_;
-  std::vector<std::string> left_out_; ///< names of removed plots
+  std::vector<std::string> left_out_; ///< names of the removed plots
 };
 
 } // namespace

@@ -13,12 +13,12 @@ namespace steplap {
 
 namespace {
 
-// Limit of size: a week of three axes at 200 Hz as text fits; an endless device or pipe would fill the memory.
+// Largest size of a file, bytes. A week of three axes at 200 Hz fits; an endless pipe must not fill the memory.
 constexpr std::size_t k_most_bytes = std::size_t{4} << 30U;
 
 constexpr const char* k_standard_input = "<standard input>"; // no file has this name
 
-// Open file descriptor; closed at the end, except standard input, which belongs to the caller.
+// Open file descriptor, closed by the destructor; standard input belongs to the caller and stays open.
 class Descriptor {
 public:
   explicit Descriptor(const std::string& path)
@@ -36,7 +36,7 @@ private:
 
 bool is_open_already(std::string_view path) { return path.starts_with("/dev/fd/") || path.starts_with("/proc/self/fd/"); }
 
-// Returns the reason why the file cannot be read to its end; "" if it can.
+// Returns a message if the file is of a kind that cannot be read to its end; otherwise "".
 std::string problem_with(const struct ::stat& status, const std::string& path) {
   if (S_ISDIR(status.st_mode)) return "it is a folder";
   if (S_ISREG(status.st_mode) || is_standard_input(path)) return "";
@@ -60,7 +60,7 @@ std::string read_input(const std::string& path, const Location& where, const std
   struct ::stat status {};
   if (file.number() < 0 || ::fstat(file.number(), &status) != 0) fail(std::strerror(errno));
   if (const std::string problem = problem_with(status, path); !problem.empty()) fail(problem);
-  // Files are opened without waiting, because of named pipes; reading waits.
+  // The file was opened without waiting, so that a named pipe without writer does not block. Reading has to wait.
   if (!is_standard_input(path)) ::fcntl(file.number(), F_SETFL, ::fcntl(file.number(), F_GETFL) & ~O_NONBLOCK);
   std::string content;
   if (S_ISREG(status.st_mode) && static_cast<std::uintmax_t>(status.st_size) > k_most_bytes) fail("it is larger than 4 GB");

@@ -8,8 +8,8 @@
 
 namespace steplap {
 
-/// Returns the content of `path`; "-" and /dev/stdin are standard input, /dev/fd/N an open descriptor. `noun` is prepended in messages
-/// ("the record "), or "". Throws ModelError at `where` if the file cannot be read, is of another type, or exceeds 4 GB.
+/// Returns the content of the file `path`; "-" and /dev/stdin are standard input, /dev/fd/N an open descriptor. `noun` precedes the path in
+/// messages: "the record ", or "". Throws ModelError at `where` if the file cannot be read, is of another type, or is larger than 4 GB.
 [[nodiscard]] std::string read_input(const std::string& path, const Location& where, const std::string& noun = "");
 
 [[nodiscard]] bool is_standard_input(const std::string& path);

@@ -30,7 +30,8 @@ TopLevelNames top_level_names(const Catalogue& catalogue) {
   return names;
 }
 
-// Applies overrides and expands parts and repetitions. Overrides of parts and of `repeat` come before the expansion, all others after it.
+// Applies the overrides and expands parts and repetitions. Overrides of [[part]] entries and of `repeat` are applied before the expansion,
+// all others after it.
 void settle(Document& document, const std::vector<std::string>& overrides, const TopLevelNames& names, const Catalogue& catalogue) {
   const auto is_of_part = [](const std::string& change) {
     return change.starts_with("part.") || change.substr(0, change.find('=')).ends_with(".repeat");
@@ -56,13 +57,13 @@ template <class Kind> const Kind* find_kind(const std::vector<const Kind*>& kind
 
 bool is_mass(const Field& field) { return field.name == "mass" || field.name == "inertia"; }
 
-// Data of an entry of Model::tables.
+// The given fields of an entry of Model::tables, and whether all could be read.
 struct TableSource {
   std::vector<GivenField> given;
   bool is_usable = true;
 };
 
-// A study file names its kind at the top; each of its tables would be an unknown key of a model.
+// Throws an error with a hint if the file is a study. Otherwise each of its tables would be reported as an unknown key.
 void refuse_study(const Document& document) {
   const Node* const kind = document.root.find("kind");
   if (!kind || kind->type != Node::Type::text) return;
@@ -76,7 +77,7 @@ public:
   Reader(Document document, const Catalogue& catalogue)
       : document_(std::move(document)), catalogue_(catalogue), names_(top_level_names(catalogue)) {}
 
-  /// Returns the model as given and the completed model; `text`, if not null, receives the text.
+  /// Returns the model as given and the completed model. If `text` is not null, it receives the text of the document.
   std::pair<Model, Model> read(const std::vector<std::string>& overrides, std::string* text = nullptr) {
     refuse_study(document_);
     settle(document_, overrides, names_, catalogue_);
@@ -139,7 +140,7 @@ private:
   std::vector<RenamedKey> renamed_;
   std::vector<std::vector<GivenField>> given_[7]; // by section and index
   std::vector<TableSource> tables_;               // for model_.tables
-  // Entries of unknown kind are reported once; references to them are no further errors.
+  // Names of signals and elements of unknown kind. They are reported once, and references to them are not.
   std::unordered_set<std::string> unread_signals_, unread_elements_;
 };
 
@@ -154,7 +155,8 @@ TableReading Reader::reading(std::string subject, std::string owner) {
   return result;
 }
 
-// Checks positions of parts first. Otherwise the same error would be repeated for all fields that follow from them.
+// Checks the units of formulas for positions of parts before anything else. Otherwise one error would appear in all fields that are
+// computed from the position.
 void Reader::check_part_places() {
   const std::size_t before = problems_.size();
   for (const Document::PartPlace& place : document_.part_places) {
@@ -187,13 +189,13 @@ template <class T> void Reader::read_settings(const std::string& name, Section s
   given(section)[0] = read_fields(*table, fields, &target, reading("[" + name + "]"), problems_);
 }
 
-// Suppresses the message about missing bodies after an error that may have caused their absence.
+// Prevents the error "no bodies" if another error may be the reason for it.
 void Reader::excuse_empty_scene() {
   static const Field body = named_field("body");
   given(Section::header)[0].push_back({&body, nullptr, false});
 }
 
-// Returns the array [[name]], or null if there is none.
+// Returns the array [[name]]; null if there is none, or if it is invalid, which is then reported.
 const Node* Reader::array_named(const std::string& name) {
   const Node* array = document_.root.find(name);
   if (!array || array->is_array_of_tables()) return array;
@@ -356,7 +358,7 @@ void Reader::read_tables() {
   }
 }
 
-// Checks units of signals: "0.5 gravity" is no force, "20 deg" no displacement.
+// Checks that the signals of elements have fitting units: "0.5 gravity" is not a force, "20 deg" not a displacement.
 void Reader::check_signal_units() {
   SignalUnits units(*parameters_);
   for (std::size_t i = 0; i < model_.signals.size(); ++i)
@@ -395,7 +397,7 @@ void Reader::complete_model() {
   places.is_table_usable = [this](std::size_t table) { return tables_[table].is_usable; };
   const std::size_t before = problems_.size();
   if (!complete(model_, places, problems_)) excuse_empty_scene();
-  // A table that could not be read or applied might have defined the masses; its own errors are reported instead.
+  // A table that could not be applied might have set the masses. Then its own errors are reported instead of missing masses.
   const bool are_tables_usable = std::all_of(tables_.begin(), tables_.end(), [](const TableSource& t) { return t.is_usable; });
   report_missing_masses(model_.tables.empty() || (are_tables_usable && problems_.size() == before));
 }
@@ -414,7 +416,7 @@ void Reader::report_missing_masses(bool is_certain) {
     }
 }
 
-// Returns the location of a field, or of the whole object if the file does not give the field.
+// Returns the location of a field, or of the object if the field is not given. Returns nothing if an error of the field was reported.
 std::optional<Location> Reader::place_of(const std::vector<GivenField>& fields, const std::string& name, const Location& object) const {
   for (const GivenField& given : fields) {
     if (given.field->name != name) continue;

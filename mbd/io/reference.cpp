@@ -65,7 +65,7 @@ std::string markdown(const ReferenceRows& rows) {
   return text;
 }
 
-// Returns the example of a kind of element; "" for others.
+// Returns the example of a kind of element; "" for kinds that are not elements.
 std::string example_of(const Catalogue& catalogue, const Described& kind) {
   const ElementKind* const element = kind.role == "element" ? catalogue.find_element(kind.name) : nullptr;
   return element ? example_text(*element) : std::string{};

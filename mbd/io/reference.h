@@ -5,7 +5,7 @@
 
 namespace steplap {
 
-/// Rows of a table; the first is its head.
+/// Rows of a table; the first row contains the headings.
 using ReferenceRows = std::vector<std::vector<std::string>>;
 
 /// Returns one row for each kind of element, signal and table.
@@ -19,10 +19,10 @@ struct KindReference {
   std::string example;    ///< TOML of an element with what it needs; empty for kinds that are no elements
 };
 
-/// Returns the references of all kinds with this name (a table and a signal may share one), or of "body", "marker", "simulation", "output" or "model" (the top-level keys). Throws ModelError for
-/// an unknown name, with the most similar known one.
+/// Returns the references of all kinds with this name; a table and a signal may share one. Other names are "body", "marker", "simulation",
+/// "output" and "model" (the top-level keys). Throws ModelError for an unknown name, with the most similar known one.
 [[nodiscard]] std::vector<KindReference> kind_references(const Catalogue& catalogue, const std::string& name);
-/// Returns a whole model with an element of the kind, as TOML. Throws ModelError for a name that is not one of a kind of element.
+/// Returns a complete model, in TOML, with an element of the kind. Throws ModelError if no kind of element has this name.
 [[nodiscard]] std::string example_model(const Catalogue& catalogue, const std::string& name);
 /// Returns the whole reference in Markdown.
 [[nodiscard]] std::string reference_markdown(const Catalogue& catalogue);

@@ -51,7 +51,7 @@ private:
            });
   }
 
-  // Replaces the index in names of a formula, {link {i+1}.x}; other braces enclose names.
+  // Replaces the index in braces by its number within names of a formula, such as {link {i+1}.x}. Other braces enclose names.
   [[nodiscard]] std::string with_numbered_names(std::string text) const {
     for (std::size_t close = text.find('}'); close != std::string::npos; close = text.find('}', close)) {
       const std::size_t open = text.rfind('{', close);
@@ -67,7 +67,7 @@ private:
     return text;
   }
 
-  // Evaluates a formula that contains only the index; nothing if the result is not a whole number.
+  // Returns the value of a formula of the index as text; nothing if it is not a whole number.
   [[nodiscard]] std::optional<std::string> index_number(const std::string& inside) const {
     try {
       const Formula formula(inside, "", {});
@@ -123,7 +123,7 @@ private:
   std::vector<Diagnostic>& problems_;
 };
 
-// Returns the number of repetitions; nothing if it is wrong.
+// Returns the number of repetitions. Reports an error and returns nothing if the value is invalid.
 std::optional<long> repeats(const Node& repeat, const std::string& subject, std::vector<Diagnostic>& problems) {
   const auto fail = [&](const std::string& message) {
     problems.push_back({repeat.where(), "'repeat' of " + subject + ": " + message});
@@ -141,7 +141,7 @@ std::optional<long> repeats(const Node& repeat, const std::string& subject, std:
   return count;
 }
 
-// Size of all texts of an entry, bytes.
+// Returns the size of all texts of an entry, bytes.
 std::size_t text_size(const Node& node) {
   std::size_t size = node.type == Node::Type::text ? node.text().size() : 0;
   for (const Node& child : node.children) size += text_size(child);

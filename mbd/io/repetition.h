@@ -21,8 +21,8 @@ namespace steplap {
 /// Largest number of entries that repetitions and parts of one model may create; far beyond what can be run.
 inline constexpr std::size_t k_most_entries = 100000;
 
-/// Expands the repetitions of `root`. Problems are appended and their entries left out. `made` counts the created entries; beyond
-/// k_most_entries no more are created.
+/// Expands the repetitions of `root`. An entry with an invalid `repeat` is left out, and the error appended to `problems`. `made` counts
+/// the created entries over several calls; beyond k_most_entries no more are created.
 void write_out_repetitions(Node& root, std::size_t& made, std::vector<Diagnostic>& problems);
 
 } // namespace steplap

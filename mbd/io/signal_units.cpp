@@ -17,7 +17,7 @@ std::string problem_of_text(const Node& node, const std::string& text, const std
   return quantity.problem.empty() ? "" : "(line " + std::to_string(node.line) + "): " + quantity.problem;
 }
 
-// Returns the unit of kinds with a fixed unit, whatever units their fields have; "" for others.
+// Returns the unit of a signal whose kind determines it; "" for other kinds.
 std::string own_unit(const std::string& kind, const std::vector<GivenField>& given) {
   if (kind == "road") return "m";
   if (kind == "recorder") return "m/s^2";
@@ -31,7 +31,7 @@ bool is_factor(const GivenField& given) { return given.field->name == "factor" |
 
 } // namespace
 
-// Returns the problem with a value, or with an item of a list.
+// Returns the error in the unit of a value, or of the first wrong item of a list; "" if there is none.
 std::string SignalUnits::problem_of(const Node& node, const std::string& unit) const {
   if (node.type == Node::Type::text) return problem_of_text(node, is_formula(node) ? parameters_.text_of(node) : node.text(), unit);
   std::string problem;
@@ -62,7 +62,7 @@ std::string SignalUnits::misfit(const std::string& signal, const std::string& un
     const Field& field = *given.field;
     std::string problem;
     if (field.unit == "*" && !is_factor(given)) problem = problem_of(*given.node, unit);
-    if (field.name == "unit" && field.type == FieldType::text && !given.node->text().empty()) // unit of a record's values
+    if (field.name == "unit" && field.type == FieldType::text && !given.node->text().empty()) // the unit of the values in a record
       problem = problem_of_text(*given.node, "1 " + given.node->text(), unit);
     if (!problem.empty()) return "its signal '" + signal + "' " + problem;
     if (!is_of_its_parts) continue;

@@ -1,6 +1,7 @@
-// Checks units of signals. A signal may have any unit; an element that uses it needs a certain one. The unit is known if a value is given
-// as text with a unit, "0.5 gravity"; a plain number gives no information. A sum or a scaled signal has the unit of its parts, unless a
-// factor may have changed it; the unit of a product is unknown. A formula of parameters has the unit of its result.
+// Checks units of signals. A signal may have any unit, but an element that uses it requires a certain one. The unit of a signal is known if
+// a value is given as text with a unit, "0.5 gravity"; a plain number tells nothing about it. A sum or a scaled signal has the unit of its
+// parts, unless it has factors, which may change the unit. The unit of a product is unknown. A formula of parameters has the unit of its
+// result.
 #pragma once
 
 #include "mbd/io/field_reader.h"
@@ -17,7 +18,8 @@ public:
   explicit SignalUnits(const ParametersReader& parameters) : parameters_(parameters) {}
   /// Adds a signal. `given` must not change afterwards.
   void enter(const std::string& signal, const std::string& kind, const std::vector<GivenField>& given);
-  /// Returns the problem with `signal` as a value in `unit`: "its signal 's' (line 7): …"; "" if none is known.
+  /// Returns why `signal` cannot be used as a value in `unit`, as a message: "its signal 's' (line 7): …". Returns "" if it can, or if its
+  /// unit is unknown.
   [[nodiscard]] std::string misfit(const std::string& signal, const std::string& unit) const;
 
 private:

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Calls `visit` with every [[signal]] entry in `root` that names a file, and with that name.
+// Calls visit(entry, name) for every [[signal]] entry in `root` that names a file.
 template <class Root, class Visit> void visit_named_files(Root& root, const Catalogue& catalogue, const Visit& visit) {
   auto* const signals = root.find("signal");
   if (!signals || !signals->is_array_of_tables()) return;
@@ -41,7 +41,7 @@ Node text_node(const std::string& key, const std::string& text) {
   return node;
 }
 
-// The format is a property of each file, not of the document (document.h), so it is added here.
+// Returns the document as TOML, with the key `format` added, which is not part of the document (document.h).
 std::string written(const Node& root) { return "format = " + std::to_string(k_file_format) + "\n" + write_toml(root); }
 
 } // namespace

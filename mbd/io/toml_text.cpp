@@ -100,8 +100,8 @@ Node from_toml(const toml::node& source, const std::string* file) {
   return node;
 }
 
-// Checks for keys with too many parts before parsing. Nested tables are processed by recursion, both in the TOML library and here. The
-// library limits brackets, but a key with 30000 parts, "a.a.a…", creates as many tables and would exhaust the stack. Quoted text and
+// Refuses keys with too many parts before parsing. The TOML library and this program process nested tables by recursion. The library limits
+// the nesting of brackets, but a key with 30000 parts, "a.a.a…", creates as many nested tables and would exhaust the stack. Quoted text and
 // comments may contain any number of points.
 class DottedKeys {
 public:
@@ -144,7 +144,7 @@ private:
     at_ = found == std::string::npos ? text_.size() : found;
   }
 
-  // Skips from an opening mark of that many quotes to behind the closing one.
+  // Skips a quoted text, from its opening mark of `quotes` characters to the end of the closing one.
   void skip_quoted(std::size_t quotes) {
     const char quote = text_[at_];
     const std::string mark(quotes, quote);
@@ -176,8 +176,8 @@ std::string_view line_at(std::string_view text, int line) {
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' || static_cast<unsigned char>(c) >= 0x80; }
 
-// Returns a hint for numbers that TOML does not accept: ".5", "5.", "05", "0,5", 0.5 kg. Empty if the value around `column` (from 1) is
-// none of them.
+// Returns a hint for numbers that TOML does not accept: ".5", "5.", "05", "0,5", 0.5 kg. Empty if the value at `column` (from 1) is not
+// such a number.
 std::string number_hint(std::string_view line, int column) {
   constexpr std::string_view k_before = "=[{ \t", k_behind = " \t\r,]}#";
   const auto at = std::min(line.size(), static_cast<std::size_t>(std::max(column, 2) - 2));

@@ -1,4 +1,4 @@
-// TOML text as a tree of nodes that know their locations. Only this module depends on the TOML library.
+// Parses TOML text into a tree of nodes with their locations. Only this module depends on the TOML library.
 #pragma once
 
 #include "mbd/base/diagnostics.h"

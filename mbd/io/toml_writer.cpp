@@ -35,7 +35,7 @@ std::string key_text(const std::string& key) {
   return key.empty() ? "\"\"" : key;
 }
 
-// Returns a number with a point or an exponent, because otherwise it would read back as an integer.
+// Returns a number with a point or an exponent. Without either it would be read as an integer.
 std::string float_text(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";

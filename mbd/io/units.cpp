@@ -29,7 +29,7 @@ struct FreeSystem {
 using UnitPtr = std::unique_ptr<ut_unit, FreeUnit>;
 using ConverterPtr = std::unique_ptr<cv_converter, FreeConverter>;
 
-// Unit decomposed into base units: their product, and their powers by name.
+// A unit decomposed into base units: their product, and their exponents by name.
 struct BaseForm {
   UnitPtr product;
   std::map<std::string, int> powers; // without the radian
@@ -76,7 +76,7 @@ ut_status visit_galilean(const ut_unit*, double, const ut_unit* underlying, doub
   return ut_accept_visitor(underlying, &k_visitor, out);
 }
 
-// Common units that the database lacks or interprets differently.
+// A common unit that the database lacks or interprets differently, with its meaning.
 struct SpokenUnit {
   const char* name;
   const char* meaning;
@@ -148,7 +148,7 @@ Conversion UnitSystem::make_conversion(const std::string& given, const std::stri
   return {ConverterPtr(ut_get_converter(from.get(), to.get())), turns ? 0.5 / std::numbers::pi : 1.0, ""};
 }
 
-// Returns a message about an unknown unit, with the product that was probably meant ("Nm": "N m").
+// Returns a message about an unknown unit, with a suggestion if a product was probably meant: "N m" for "Nm".
 std::string UnitSystem::unknown_unit(const std::string& given, const std::string& wanted) const {
   std::string text = "has the unknown unit '" + given + "'";
   const bool may_be_product = given.find(' ') == std::string::npos && given.size() < 12;
@@ -160,7 +160,7 @@ std::string UnitSystem::unknown_unit(const std::string& given, const std::string
   return text;
 }
 
-// Returns the powers of kg, m and s; nothing for an unknown unit or one with other base units.
+// Returns the exponents of kg, m and s; nothing for an unknown unit or one with other base units.
 std::optional<std::array<double, 3>> UnitSystem::powers(const std::string& given) const {
   const UnitPtr unit = parse(given);
   BaseForm form;
@@ -182,8 +182,8 @@ std::string trimmed(const std::string& text) {
 
 std::string example(const std::string& unit) { return unit.empty() || unit == "*" ? "'0.5'" : "'0.5 " + unit + "'"; }
 
-// Conversions of the most frequent units, bit for bit equal to the database (a test compares them). Reading the UDUNITS database takes
-// longer than the rest of a program's start.
+// Conversion of a frequent unit without the database, since reading the database takes longer than the rest of the program's start. The
+// results are bit-identical to those of the database, as a test checks.
 struct UsualUnit {
   const char* given;
   const char* wanted;
@@ -237,7 +237,7 @@ Quantity without_unit(double value, const std::string& text, const std::string& 
 
 namespace {
 
-// Returns the UDUNITS database; not for concurrent use.
+// Returns the UDUNITS database, which is read at the first call. Not thread-safe.
 UnitSystem& unit_system() {
   static UnitSystem system;
   return system;

@@ -11,25 +11,25 @@
 
 namespace steplap {
 
-/// Value in the required unit, or the error (`problem` not empty).
+/// A value in the required unit, or an error message in `problem`.
 struct Quantity {
   double value = 0.0;
   std::string problem;
 };
 
-/// Source of a unit: the table of frequent units first, or the UDUNITS database only.
+/// Where a unit is looked up: first in the table of frequent units, or only in the UDUNITS database. Both give the same result.
 enum class UnitSource { usual_first, database };
 
-/// Reads "number unit". `unit`: unit of the field (SI, UDUNITS spelling, "" = dimensionless); "*" accepts any unit and returns the value in
-/// SI base units. Angles count as dimensionless, with two exceptions: for a field in "Hz", "rad/s" and "rpm" are divided by 2π, and "Hz" is
-/// refused for an angular velocity. Throws ModelError if the unit database is missing. Thread-safe.
+/// Reads "number unit" and converts it to `unit`, the unit of a field (SI, UDUNITS spelling, "" = dimensionless); "*" accepts any unit and
+/// returns the value in SI base units. Angles count as dimensionless, with two exceptions: for a field in "Hz", "rad/s" and "rpm" are
+/// divided by 2π, and "Hz" is refused for an angular velocity. Throws ModelError if the unit database is missing. Thread-safe.
 [[nodiscard]] Quantity parse_quantity(const std::string& text, const std::string& unit, UnitSource source = UnitSource::usual_first);
 
-/// Returns the powers of kg, m and s in the unit of "number unit"; nothing if the text is no such quantity or its unit contains other base
+/// Returns the exponents of kg, m and s in the unit of "number unit"; nothing if the text is not a quantity or its unit contains other base
 /// units. Throws ModelError if the unit database is missing. Thread-safe.
 [[nodiscard]] std::optional<std::array<double, 3>> powers_in(const std::string& text);
 
-/// Returns the pairs (unit as written, unit of the field) that need no database.
+/// Returns the pairs (unit as written, unit of the field) that are converted without the database.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> usual_units();
 
 } // namespace steplap
