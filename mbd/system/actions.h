@@ -1,11 +1,11 @@
-// `[[action]]` tables of a compiled system: their conditions as event functions, and their steps.
+// The `[[action]]` tables of a compiled system: conditions as event functions, and steps.
 //
-// The group applies no forces. A comparison consists of switches (FormulaProgram), each with an event function, so that the event finder
-// locates the time at which the condition becomes true. A time is a breakpoint. An event of an element is one reported by the event
-// handler.
+// A comparison consists of switches (FormulaProgram), each with an event function, so that the event finder locates the time at which the
+// condition becomes true. A condition on time is a breakpoint. A condition on an event of an element is met when the event handler reports
+// that event.
 //
-// A system is constant. An action therefore does not change a system but leads to another one, compiled from the same model with changed
-// fields, and the run continues there (mbd/simulation/changeover.h).
+// A system is constant, so an action does not change it. The model is compiled again with changed fields, and the run continues with the
+// new system (mbd/simulation/changeover.h).
 #pragma once
 
 #include "mbd/model/action.h"
@@ -37,7 +37,7 @@ struct ActionTrigger {
   EventKind event = EventKind::none;
 };
 
-/// All actions of a model, in the order of the file. Applies no forces.
+/// All actions of a model, in the order of the file, as a force group that applies no forces.
 class ActionGroup final : public ForceGroup {
 public:
   struct ElementData {
@@ -45,12 +45,13 @@ public:
     ActionTrigger trigger;
     std::vector<ActionStep> steps;
     bool is_once = true, is_armed = true;
-    int unit = -1, first_event = 0; ///< mode and event functions of a comparison
+    int unit = -1, first_event = 0; ///< index of the mode and of the first event function of a comparison
   };
   std::vector<ElementData> entries;
   std::shared_ptr<const Model> model;                    ///< completed model with the values at the start of a run
   std::optional<std::vector<std::string>> channels = {}; ///< channels that were requested; not given: all
-  /// Changes made to the system after compilation, such as added channels. They are repeated for the systems that actions create.
+  /// Functions that change the system after compilation, for example by adding channels. They are called for each system that an action
+  /// creates, too.
   std::vector<std::function<void(System&)>> additions = {};
 
   void add_forces(Evaluation& e) const override;
@@ -63,15 +64,15 @@ public:
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
 
-  /// Returns whether the comparison or time condition is true at `state`. `is_stepped`: the run uses time stepping, so the modes of units
-  /// are not up to date and the formula is evaluated again.
+  /// Returns true if the condition is met at `state`; for comparisons and times only. `is_stepped`: the run uses time stepping, in which
+  /// the modes of comparisons are not kept up to date, so the formula is evaluated again.
   [[nodiscard]] bool holds(std::size_t action, const State& state, const std::vector<Motion<double>>& motion, bool is_stepped) const;
 
 private:
   template <class S, class AtTime> void event_value(EvaluationData<S>& e, const AtTime& at_time) const;
 };
 
-/// Returns the actions of the system, or nullptr.
+/// Returns the actions of the system; nullptr if it has none.
 [[nodiscard]] const ActionGroup* action_group(const System& system);
 [[nodiscard]] ActionGroup* action_group(System& system);
 

@@ -15,7 +15,7 @@ public:
   [[nodiscard]] virtual double rate_error(const Evaluation& e, const FrictionState& from, const FrictionState& to) const = 0;
 };
 
-/// The same for any friction element; 0 for those with real contact points, such as feet.
+/// Returns ApproximatePlace::rate_error() of a friction element, m/s; 0 if its contact points are exact, as those of feet.
 [[nodiscard]] inline double rate_error(const FrictionElement& friction, const Evaluation& e, const FrictionState& from,
                                        const FrictionState& to) {
   const auto* const approximate = dynamic_cast<const ApproximatePlace*>(&friction);

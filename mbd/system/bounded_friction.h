@@ -1,5 +1,5 @@
-// Friction elements with one row. Their admissible wrenches K are an interval, which they give as a function; the mode problem, the support
-// function and the gauge follow from it.
+// Friction elements with one row. Their sets K of admissible forces are intervals, which bounds() returns; the mode problem, the support
+// function and the gauge follow from the interval.
 //
 //   Coulomb friction          [−μN, μN]
 //   one-way clutch            [−holds, drags] or [−drags, holds]; −∞ or ∞ if 'holds' is not given
@@ -13,10 +13,10 @@
 
 namespace steplap {
 
-// Relative tolerance of a bound for rounding errors of the wrench; ten times less than the 1e-12 to which a load is resolved.
+// Relative tolerance of a bound, for rounding errors of the force on it. Loads are resolved to 1e-12, ten times this.
 inline constexpr double k_friction_bound_slack = 1e-13;
 
-/// Event functions of sticking for a symmetric bound, FrictionElement::stick_events(): bound ± λ, N or N m.
+/// Sets the event functions of sticking for a symmetric bound (FrictionElement::stick_events()) to bound ± λ, N or N m.
 template <class S> void bound_events(const S& bound, const S& wrench, S* event_value) {
   const S most = bound * (1.0 + k_friction_bound_slack);
   event_value[0] = most - wrench;
@@ -31,10 +31,10 @@ struct WrenchBounds {
   static WrenchBounds symmetric(double bound) { return {-bound, bound}; }
 };
 
-/// Friction along one row.
+/// Friction along one row, with an interval K.
 class BoundedFriction : public FrictionElement {
 public:
-  /// Returns K, with the static coefficients or the kinetic ones.
+  /// Returns K with the static coefficients, or with the kinetic ones if `kinetic`.
   [[nodiscard]] virtual WrenchBounds bounds(const Evaluation& e, const FrictionState& state, bool kinetic) const = 0;
 
   [[nodiscard]] int dimension() const final { return 1; }
@@ -64,7 +64,8 @@ public:
     const double least = k.low * (1.0 + k_friction_bound_slack) - k.rounding, most = k.high * (1.0 + k_friction_bound_slack) + k.rounding;
     BlockSolution block;
     const double wanted = a[0] > 0.0 ? -b[0] / a[0] : (b[0] > 0.0 ? k.low : k.high);
-    // If a drive prescribes the coordinate (a = 0) friction does not affect the motion, and b alone decides.
+    // If a drive prescribes the coordinate (a = 0), friction cannot change the motion: the element sticks if the prescribed acceleration b
+    // is zero.
     block.sticks = a[0] > 0.0 ? wanted >= least && wanted <= most : std::abs(b[0]) <= k_no_motion;
     block.wrench[0] = std::clamp(wanted, k.low, k.high);
     block.direction[0] = wanted > 0.5 * (k.low + k.high) ? -1.0 : 1.0;

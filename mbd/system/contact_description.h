@@ -1,5 +1,6 @@
-// Describes a contact element: where it touches, how deep it may be pressed, which bodies stand on it. Each kind of contact fills in the
-// description (ElementKind::contact), so that findings, tipping and stories need no list of kinds.
+// Describes a contact element to other parts of the program: its contact points, the largest valid penetration, and which bodies may tip.
+// Each kind of contact provides the description (ElementKind::contact), so that warnings, the search for tipping and reports need no list
+// of kinds.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -12,7 +13,7 @@
 
 namespace steplap {
 
-/// Poses of markers and outlines in a state. Keeps references.
+/// Positions of markers and outlines in one state. Keeps references to its arguments.
 class ScenePose {
 public:
   ScenePose(const Model& model, const System& system, const State& state) : model_(model), system_(system), state_(state) {}
@@ -25,7 +26,8 @@ public:
   };
   /// Returns the pose of a marker, or of a body's centre of gravity.
   [[nodiscard]] PlacedMarker marker(const std::string& name) const;
-  /// Returns corners in ground axes, m, counter-clockwise: `given` in the marker's axes, or if that is empty the outline of its body.
+  /// Returns the corners of a contour in ground axes, m, counter-clockwise: `given`, in the axes of the marker, or the outline of the
+  /// marker's body if `given` is empty.
   [[nodiscard]] std::vector<Vec2> outline(const std::string& marker, const std::vector<Vec2>& given) const;
 
 private:
@@ -40,26 +42,27 @@ struct ContactPoint {
   Vec2 normal = Vec2::Zero(); ///< unit direction of the force on a
 };
 
-/// Answers of one contact element.
+/// Properties of one contact element.
 struct ContactDescription {
-  /// Bodies that stand in contact by corners or faces, so that a large rotation means that they tip. Wheels and rollers turn.
+  /// The bodies that stand on corners or faces, for which a large rotation means tipping over. Wheels and rollers may rotate.
   enum class Standing : std::uint8_t { none, a, both };
 
   std::string a, b; ///< markers that touch
   Standing standing = Standing::none;
   bool is_preloaded = false;      ///< a preload or an interference presses it in the given pose
   bool opening_ends_slip = false; ///< the contact has its own friction, which ends when it opens
-  /// Largest penetration, m, for which the law is meaningful; a deeper one means that one part is through the other. Nothing: no limit.
+  /// Largest penetration, m, for which the contact law is meaningful. At a larger one a part has passed through the other. Nothing: no
+  /// limit.
   std::optional<double> depth_limit;
-  /// Returns where the contact touches; two points are the ends of a common face. Empty: it has no direction in this pose.
+  /// Returns the points of contact; two points are the ends of a common face. Empty if the contact has no direction in this pose.
   std::vector<ContactPoint> (*points)(const Element& element, const ScenePose& pose) = nullptr;
 };
 
 /// Returns the description of a contact; nothing if the element is none.
 [[nodiscard]] std::optional<ContactDescription> contact_of(const ElementEntry& entry, const Model& model);
 
-/// Returns the thickness, m, of the outline of a marker's body behind the line through the marker with normal `normal`, in its axes. Nothing
-/// if the body has no outline there.
+/// Returns the thickness, m, of a marker's body along `normal`, measured in the outline behind the line through the marker that is
+/// perpendicular to `normal` (in the marker's axes). Nothing if the body has no outline there.
 [[nodiscard]] std::optional<double> thickness_behind(const Model& model, const std::string& marker, const Vec2& normal);
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// Failure of a computation at certain elements. A caller that knows the model adds their locations in the file.
+// Failure of a computation that is caused by certain elements. Callers that know the model add the locations of these elements in the file.
 #pragma once
 
 #include "mbd/base/diagnostics.h"
@@ -14,7 +14,7 @@ public:
   ElementFailure(const std::string& message, std::vector<std::string> elements)
       : NumericalFailure(message), elements_(std::move(elements)) {}
 
-  /// Returns names of elements or bodies, the worst first.
+  /// Returns the names of the elements or bodies that caused the failure, the worst first.
   [[nodiscard]] const std::vector<std::string>& elements() const { return elements_; }
 
 private:

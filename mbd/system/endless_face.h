@@ -1,5 +1,6 @@
 // Faces that a contact law continues without end although the part that carries them ends: the line of a unilateral_contact, a half-plane,
-// the road of a tyre. Beyond the outline of the part the law presses on nothing; a run in which that happens must not count as held.
+// the road of a tyre. Beyond the outline of the part the law still exerts a force, although nothing is there; a run in which that happens
+// must not count as held.
 #pragma once
 
 #include "mbd/base/types.h"
@@ -21,10 +22,10 @@ struct EndlessFace {
   double low = 0.0;         ///< smallest coordinate of b's outline along (n_y, −n_x), from b's centre of gravity, m
   double high = 0.0;        ///< largest such coordinate
   std::string part;         ///< name of the body whose outline it is
-  std::string remedy;       ///< what gives the face an end, as a clause
+  std::string remedy;       ///< clause for messages that says how the model can give the face an end
 };
 
-/// Place of a contact along its face.
+/// Position of a contact along its face.
 struct FacePlace {
   double along = 0.0; ///< coordinate along (n_y, −n_x) from b's centre of gravity, m
   double rate = 0.0;  ///< its rate, m/s
@@ -33,8 +34,8 @@ struct FacePlace {
 /// Returns the length by which `along` lies beyond the outline, m; negative within it.
 [[nodiscard]] double distance_beyond(const EndlessFace& face, double along);
 
-/// Returns the place of that point of a behind the face (of a single point in any case) that lies farthest beyond the outline, or nearest to
-/// its end. Precondition: one of the points presses.
+/// Returns the position along the face of the contact point farthest beyond the outline, or nearest to its end if all lie within. With
+/// several points only those behind the face count. Precondition: one of the points presses.
 [[nodiscard]] FacePlace place_on(const EndlessFace& face, const Motion<double>* motion);
 
 } // namespace steplap

@@ -1,5 +1,5 @@
-// Arrays that elements read and write in an evaluation, and scratch memory of friction elements. Each evaluator (Dynamics, Statics, the
-// calls of a tape, tests) has its own, allocated once for a system.
+// Arrays that elements read and write in an evaluation, and scratch memory of friction elements. Each evaluator (Dynamics, Statics, a tape
+// that calls elements, tests) has its own, allocated once for a system.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -10,7 +10,7 @@
 
 namespace steplap {
 
-/// Initial values: event functions 1 (not triggered), their rates NaN (unknown), all others 0.
+/// Arrays for the results of an evaluation. Initial values: event functions 1 (not triggered), their rates NaN (unknown), all others 0.
 struct EvaluationArrays {
   std::vector<BodyForce> force;                      ///< per slot (LinkTable)
   std::vector<double> contact_force;                 ///< per contact
@@ -34,12 +34,12 @@ struct EvaluationArrays {
   }
 };
 
-/// Computes the motions of all links from those of the bodies; `motion` has one entry per slot, bodies first.
+/// Computes the motions of all links from those of the bodies. `motion` has one entry per slot of LinkTable, bodies first.
 inline void place_links(const LinkTable& links, std::vector<Motion<double>>& motion) {
   for (int i = 0; i < links.size(); ++i) motion[links.slot(i)] = seen_from(motion[links[i].a], motion[links[i].b]);
 }
 
-/// Adds the forces in all links to those of their bodies; `motion` and `force` have one entry per slot.
+/// Adds the force in each link to the forces on its two bodies. `motion` and `force` have one entry per slot of LinkTable.
 inline void add_link_forces(const LinkTable& links, const std::vector<Motion<double>>& motion, std::vector<BodyForce>& force) {
   for (int i = 0; i < links.size(); ++i) {
     const int slot = links.slot(i);
@@ -47,7 +47,7 @@ inline void add_link_forces(const LinkTable& links, const std::vector<Motion<dou
   }
 }
 
-/// Scratch objects of the friction elements of a system, for one thread; null for elements that need none.
+/// The caches of all friction elements of a system (FrictionScratch) for one thread; null for elements without a cache.
 class FrictionScratches {
 public:
   explicit FrictionScratches(const System& system) {

@@ -19,7 +19,7 @@ double factor_of(const std::string& unit) {
 
 } // namespace
 
-// Merges nested formulas into one tree. Nodes that already exist are shared; otherwise the size could double with each level of nesting.
+// Merges nested formulas into one tree. Equal nodes are made only once; otherwise the size could double with each level of nesting.
 class FormulaChannel::Joining {
 public:
   explicit Joining(FormulaChannel& made) : made_(made) {}
@@ -42,7 +42,7 @@ public:
     number.number = factor;
     return add(FormulaOp::multiply, add(number), node);
   }
-  // Adds the nodes of `tree`, with its operands replaced by nodes of the merged tree.
+  // Adds the nodes of `tree`, with operand i replaced by node operands[i] of the merged tree. Returns the root.
   int add_tree(const FormulaTree& tree, const std::vector<int>& operands) {
     std::vector<int> place;
     for (FormulaNode node : tree) {

@@ -1,4 +1,5 @@
-// A channel defined by a formula of other channels. Nested formulas are merged into one tree whose leaves are not formulas.
+// A channel defined by a formula of other channels. Formulas within formulas are merged into one tree, whose operands are channels of
+// elements.
 #pragma once
 
 #include "mbd/formula/formula_tree.h"
@@ -14,18 +15,18 @@ namespace steplap {
 /// The value of a channel that is a formula of other channels.
 class FormulaChannel {
 public:
-  /// A channel that is not a formula itself.
+  /// An operand of the merged tree: a channel that is not a formula.
   struct Leaf {
     std::string name; ///< name of the channel
     std::function<double(const Snapshot&)> value;
     double factor; ///< value of one unit of the channel in SI
   };
 
-  /// `operands` are the channels that `tree` refers to by number. The value of the channel is `factor` times the value of the tree, which
-  /// is in SI.
+  /// Merges `tree` with the formulas among its operands; operand i of `tree` is *operands[i]. The tree is evaluated in SI; `factor`
+  /// converts its value to the unit of the channel.
   FormulaChannel(const FormulaTree& tree, const std::vector<const Channel*>& operands, double factor);
 
-  /// Returns the merged tree over the leaves, in SI; its last node is the value.
+  /// Returns the merged tree, in SI. Its last node is the value, and its operand i is leaves()[i].
   [[nodiscard]] const FormulaTree& tree() const { return tree_; }
   /// Returns the operands of the merged tree.
   [[nodiscard]] const std::vector<Leaf>& leaves() const { return leaves_; }
@@ -39,13 +40,13 @@ private:
   std::vector<Leaf> leaves_;
 };
 
-/// Callable stored in Channel::value of a formula channel.
+/// Type of Channel::value for a formula channel, from which formula_of() recovers the formula.
 struct FormulaValue {
   std::shared_ptr<const FormulaChannel> formula;
   double operator()(const Snapshot& snapshot) const { return formula->value(snapshot); }
 };
 
-/// Returns the formula of a channel, or null if it is not a formula.
+/// Returns the formula of a channel; null if the channel is not a formula.
 [[nodiscard]] inline const FormulaChannel* formula_of(const Channel& channel) {
   const FormulaValue* const value = channel.value.target<FormulaValue>();
   return value ? value->formula.get() : nullptr;

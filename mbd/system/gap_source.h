@@ -25,7 +25,7 @@ struct GapBounds {
   double through = std::numeric_limits<double>::infinity();
 };
 
-/// A group of contacts that can compute gap bounds.
+/// Additional interface of a force group whose contacts can compute gap bounds.
 class GapSource {
 public:
   virtual ~GapSource() = default;
@@ -33,14 +33,14 @@ public:
   virtual void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const = 0;
 };
 
-/// Bounds for a point of a above a line of b, in contact where `measure` is below `offset`. The line has no far side.
+/// Returns the bounds for a point of a above a line of b, in contact where `measure` is below `offset`. The line has no far side.
 inline GapBounds gap_bounds(const AxisMeasure& measure, double offset, const Motion<double>& a, const Motion<double>& b) {
   const auto m = measure.at<false, double>(a, b);
   GapBounds bounds;
   bounds.gap = m.value - offset;
   bounds.normal = m.direction;
   bounds.reach_a = measure.point_a.norm();
-  // The nearest point of the line can move away from b's centre by as much as the gap closes.
+  // The point of the line next to the tip moves away from b's centre by at most the decrease of the gap.
   bounds.reach_b = portable::hypot(m.lever_b.x, m.lever_b.y) + std::max(0.0, bounds.gap);
   return bounds;
 }
@@ -50,7 +50,8 @@ GapBounds gap_bounds(const CoordinateMeasure<K>& measure, double offset, const M
   return gap_bounds(measure.along_axis(), offset, a, b);
 }
 
-/// If the contact axis is fixed in a, the gap along it is the distance from the line divided by the cosine of their angle.
+/// Returns the bounds for a contact axis that is fixed in a: the gap along it is the distance from the line over the cosine of the angle
+/// between axis and normal.
 inline GapBounds gap_bounds(const GapMeasure& measure, double offset, const Motion<double>& a, const Motion<double>& b) {
   GapBounds bounds = gap_bounds(AxisMeasure{measure.point_a, measure.point_b, measure.normal}, 0.0, a, b);
   if (!measure.is_axis_in_a) {
@@ -63,7 +64,7 @@ inline GapBounds gap_bounds(const GapMeasure& measure, double offset, const Moti
   return bounds;
 }
 
-/// Bounds for two circles outside each other; `offset` is the sum of their radii.
+/// Returns the bounds for two circles outside each other; `offset` is the sum of their radii.
 inline GapBounds gap_bounds(const DistanceMeasure& measure, double offset, const Motion<double>& a, const Motion<double>& b) {
   const auto m = measure.at<false, double>(a, b);
   GapBounds bounds;

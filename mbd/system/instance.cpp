@@ -43,9 +43,9 @@ std::unique_ptr<System> instantiate(const Model& given, const ModelValues& value
   return compile(completed(model));
 }
 
-// Determines which parts of completion (completion.h) read the field. Markers depend on centres of gravity, bodies on joints, elements on
-// tables such as [[core]], which read bodies and everything completed before them; validation compares the settings of a run with each
-// other.
+// Returns which parts of completion (completion.h) read the field at `path`. Markers depend on centres of gravity, poses of bodies on
+// joints. Elements from tables such as [[core]] depend on bodies and on everything completed before them. The settings of a run are
+// validated against each other.
 Variants::RecompilationScope Variants::recompilation_for(const std::string& path) const {
   const auto if_any_table = [&](bool TableKind::*reads) {
     const bool is_any = std::any_of(given_.tables.begin(), given_.tables.end(), [&](const TableEntry& e) { return e.kind->*reads; });
@@ -88,12 +88,12 @@ Variants::Variants(const Model& given, std::vector<std::string> paths, const std
   }
   const bool is_any_builder =
       std::any_of(given_.tables.begin(), given_.tables.end(), [](const TableEntry& e) { return body_builder(e) != nullptr; });
-  // Tables that add bodies and markers require a complete repetition.
+  // Bodies and markers that tables add cannot be replaced alone, so everything is completed again.
   if (redone_ == RecompilationScope::tables && is_any_builder) redone_ = RecompilationScope::all;
   if (redone_ == RecompilationScope::tables) note_tables();
 }
 
-// Returns true if the path leads to `head`, or to a parameter on which a field there depends.
+// Returns true if the path begins with `head`, or names a parameter on which a field whose path begins with `head` depends.
 bool Variants::is_set_by(const std::string& path, const std::string& head) const {
   if (path.starts_with(head)) return true;
   if (!path.starts_with("parameters.")) return false;
@@ -123,7 +123,7 @@ void Variants::note_tables() {
     else if (std::any_of(paths_.begin(), paths_.end(), [&](const std::string& path) { return is_set_by(path, entry.kind->name + "."); }))
       redone_ = RecompilationScope::all;
   }
-  for (std::size_t i = 0; i < completed_.markers.size(); ++i) // markers made for bodies follow the given ones
+  for (std::size_t i = 0; i < completed_.markers.size(); ++i) // markers made for bodies come after the given ones
     if (i >= given_.markers.size() || (!given_.markers[i].point && !given_.markers[i].at)) at_centres_.push_back(i);
   for (std::size_t i = count; i < completed_.elements.size(); ++i)
     added_.emplace_back(completed_.elements[i].kind, completed_.elements[i].element->name);
@@ -137,7 +137,8 @@ void Variants::place_at_centres() {
   }
 }
 
-// Applies the tables again. Returns false if this does not suffice: an error, or another number of elements. completed() is then required.
+// Applies the tables to the completed model again. Returns false if an error occurs, if elements differ from those added before, or if a
+// value is out of range; then everything must be completed again.
 bool Variants::apply_tables() {
   place_at_centres();
   try {

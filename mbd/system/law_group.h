@@ -24,7 +24,8 @@
 
 namespace steplap {
 
-/// Returns the motion of body j of N as dual numbers. Derivatives by its pose have indices 3 j …, those by its velocity 3 N + 3 j ….
+/// Returns the motion of body j of N bodies as dual numbers. The derivatives by its pose have the indices 3 j …, those by its velocity 3 N
+/// + 3 j ….
 template <int N> [[nodiscard]] Motion<Dual<6 * N>> seeded_of(const Motion<double>& m, int j) {
   using D = Dual<6 * N>;
   const int pose = 3 * j, velocity = 3 * N + 3 * j;
@@ -42,11 +43,11 @@ template <int N> [[nodiscard]] Motion<Dual<6 * N>> seeded_of(const Motion<double
   return s;
 }
 
-/// The same for two bodies: pose at derivative indices first … first+2, velocity at 6+first ….
+/// Returns the motion of one of two bodies as dual numbers: body 0 for `first` = 0, body 1 for `first` = 3.
 inline Motion<Dual<12>> seeded(const Motion<double>& m, int first) { return seeded_of<2>(m, first / 3); }
 
-/// Appends the derivatives of force(value, rate), acting along the measure, with respect to poses and velocities of a and b. Returns the
-/// force.
+/// Computes a force along a measure from force(value, rate), and appends its derivatives by poses and velocities of a and b. Returns the
+/// force with its derivatives.
 template <class Measure, class Force>
 Dual<12> add_pair_jacobian(int a, int b, const Measure& measure, const Evaluation& e, const Force& force, std::vector<PairJacobian>& out) {
   const auto m = measure.template at<false, Dual<12>>(seeded(e.motion[a], 0), seeded(e.motion[b], 3));
@@ -65,7 +66,7 @@ Dual<12> add_pair_jacobian(int a, int b, const Measure& measure, const Evaluatio
   return f;
 }
 
-/// Calls the law's is_armed_at_entry(); false if it has none.
+/// Returns the law's is_armed_at_entry() (ForceGroup); false if the law does not define it.
 template <class Law> [[nodiscard]] bool is_armed_at_entry(const Law& law, UnitMode mode, int slot, double value, double rounding) {
   if constexpr (requires { law.is_armed_at_entry(mode, slot, value, rounding); }) return law.is_armed_at_entry(mode, slot, value, rounding);
   return false;
@@ -81,7 +82,7 @@ concept TraceableLaw = requires(const Law& law, const TapeNumber& x, TapeNumber*
                    requires { law.event_value(x, x, UnitMode{}, event_value, event_value); };
 };
 
-/// Base class in place of GapSource for elements that are not contacts.
+/// Base class of groups that are not contacts, in place of GapSource.
 struct NoGaps {};
 
 template <class Measure, class Law>
@@ -136,7 +137,7 @@ public:
     for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
 
-  /// Overrides GapSource::add_gaps() if the law is a contact.
+  /// Overrides GapSource::add_gaps() for laws that are contacts.
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const {
     if constexpr (Law::k_is_contact)
       for (const ElementData& entry : entries) {
@@ -188,12 +189,12 @@ private:
     return value_rounding(m, e.motion[entries[element].a], e.motion[entries[element].b]);
   }
   template <class S> STEPLAP_INLINE void add_forces_to(EvaluationData<S>& e) const {
-    S dissipation{0.0}; // in a register: a sum in memory would serialise the elements
+    S dissipation{0.0}; // a local variable, since a sum in memory would make each element wait for the one before
     for (const ElementData& entry : entries) dissipation += add_force_to(entry, e);
     e.dissipation += dissipation;
   }
 
-  /// Returns the dissipated power, W.
+  /// Adds the force of one element and writes its event functions. Returns the dissipated power, W.
   template <class S> STEPLAP_INLINE static S add_force_to(const ElementData& entry, EvaluationData<S>& e) {
     const auto m = entry.measure.template at<false, S>(e.link_motion[entry.link], Origin{});
     const S f = entry.law.force(m.value, m.rate, mode_of(entry, e));

@@ -59,7 +59,8 @@ template <class S> STEPLAP_INLINE Motion<S> seen_from(const Motion<S>& a, const 
   return m;
 }
 
-/// Adds the force on a member of a cluster, given at the member's centre of gravity, to the sum at the centre of gravity of the cluster.
+/// Adds the force on a body that is merged into a cluster (layout.h) to the force on the cluster. `f` acts at the body's centre of gravity,
+/// `sum` at that of the cluster.
 template <class S>
 STEPLAP_INLINE void add_member_force(const BodyForceOf<S>& f, const Motion<S>& member, const Motion<S>& cluster, BodyForceOf<S>& sum) {
   sum.fx += f.fx;
@@ -67,13 +68,14 @@ STEPLAP_INLINE void add_member_force(const BodyForceOf<S>& f, const Motion<S>& m
   sum.m += f.m + (member.x - cluster.x) * f.fy - (member.y - cluster.y) * f.fx;
 }
 
-/// Returns the second time derivative of (x, y) of the motion `link` (seen_from) if both bodies have zero acceleration: the sum of the
+/// Returns the second time derivative of (x, y) of the motion `link` (seen_from) at zero accelerations of both bodies: the sum of the
 /// centrifugal term ω² (x, y) and the Coriolis term 2 ω (ẏ, −ẋ), with ω the angular velocity of b.
 template <class S> STEPLAP_INLINE Pair<S> frame_acceleration(const Motion<S>& link, const S& omega_b) {
   return {omega_b * (omega_b * link.x + 2.0 * link.vy), omega_b * (omega_b * link.y - 2.0 * link.vx)};
 }
 
-/// Adds the force f on a, given at the centre of gravity of a in the axes of b, to the force on a, and its reaction to the force on b.
+/// Adds a link's force to the forces on its bodies. `f` is the force on a at its centre of gravity, in the axes of b; the opposite force
+/// acts on b.
 template <class S>
 STEPLAP_INLINE void add_link_force(const BodyForceOf<S>& f, const Motion<S>& link, const Motion<S>& b, BodyForceOf<S>& on_a,
                                    BodyForceOf<S>& on_b) {

@@ -22,8 +22,8 @@ template <class S> struct MeasureValue {
   S couple{0};              ///< couple on a; the opposite acts on b
 };
 
-/// Value e·(p_A − p_B) with e fixed in b; gradient: unit force e at p_A. Computed as e·r − e·point_b with r from b's centre of gravity to
-/// p_A; the second term is constant in b's frame.
+/// Value e·(p_A − p_B) with e fixed in b; gradient: unit force e at p_A. Computed as e·r − e·point_b, with r the vector from b's centre of
+/// gravity to p_A; the second term is constant.
 struct AxisMeasure {
   Vec2 point_a, point_b, axis; ///< in the frames of a, b and b
   template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
@@ -51,7 +51,7 @@ template <int K, class S> struct CoordinateValue {
   Pair<S> lever_a;
 };
 
-/// AxisMeasure along b's own x axis (K = 0) or y axis (K = 1), as for most supports and blocks. Seen from b the direction is constant and
+/// AxisMeasure along b's own x axis (K = 0) or y axis (K = 1), as in most supports and blocks. In b's frame the direction is constant and
 /// only one coordinate is needed, which is cheaper.
 template <int K> struct CoordinateMeasure {
   Vec2 point_a, point_b;
@@ -69,7 +69,7 @@ template <int K> struct CoordinateMeasure {
   }
 };
 
-/// Calls f with the cheapest measure equivalent to m.
+/// Calls f with a measure of the same value as m: a CoordinateMeasure if the axis is parallel to an axis of b, otherwise m.
 template <class F> void with_cheapest(const AxisMeasure& m, F&& f) {
   if (m.axis == Vec2(1.0, 0.0)) f(CoordinateMeasure<0>{m.point_a, m.point_b});
   else if (m.axis == Vec2(0.0, 1.0)) f(CoordinateMeasure<1>{m.point_a, m.point_b});
@@ -116,7 +116,7 @@ struct GapMeasure {
   Vec2 axis = Vec2::Zero();      ///< contact axis in the frame of a, if is_axis_in_a; otherwise the axis is `normal`
   bool is_axis_in_a = false;
   template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
-    // Forces along n through p_A and through the tip have the same line of action, so the gap is an axis measure.
+    // Through p_A and through the tip a force along n has the same line of action, so the gap equals an AxisMeasure.
     if (!is_axis_in_a) return AxisMeasure{point_a, point_b, normal}.at<WithBias, S>(a, b);
     MeasureValue<S> m;
     const Pair<S> ra = to_ground(a, point_a), n = to_ground(b, normal), shaft = to_ground(a, axis);

@@ -1,7 +1,7 @@
-// Channels that are a measure of two bodies or its rate. Formulas in the equations of motion may use them.
+// Channels whose value is a measure of two bodies, or the rate of one. Formulas in the equations of motion may use them.
 //
-// Such formulas need their operands also as dual numbers or on a tape. A channel whose value is a MeasuredValue contains the measure from
-// which these can be computed.
+// Such formulas also need their operands as dual numbers and on a tape. The channel's value therefore contains the measure, from which any
+// number type can be computed.
 #pragma once
 
 #include "mbd/system/row.h"
@@ -12,8 +12,8 @@
 
 namespace steplap {
 
-/// Callable stored in Channel::value. `shown` computes the value of the channel, which equals the value of `measure` minus `zero`, or its
-/// rate.
+/// Type of Channel::value for such a channel. `shown` returns the value of the channel: the value of `measure` minus `zero`, or the rate of
+/// `measure`.
 struct MeasuredValue {
   std::function<double(const Snapshot&)> shown;
   RowSpec measure;   ///< single measure of two bodies
@@ -23,10 +23,10 @@ struct MeasuredValue {
   double operator()(const Snapshot& snapshot) const { return shown(snapshot); }
 };
 
-/// Returns the measure of a channel, or null if the channel has none.
+/// Returns the measure behind a channel; null if the channel is not a measure.
 [[nodiscard]] inline const MeasuredValue* measured_by(const Channel& channel) { return channel.value.target<MeasuredValue>(); }
 
-/// Return the measures as rows.
+/// The functions row_of() return a measure of bodies a and b as a row.
 [[nodiscard]] inline RowSpec row_of(int a, int b, const AxisMeasure& m) {
   RowSpec row;
   row.a = a;

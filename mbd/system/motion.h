@@ -7,7 +7,7 @@
 #include <cmath>
 #include <type_traits>
 
-// Measures and laws have only a few dozen operations, so a function call and copying its result would double their cost.
+// Forces inlining: measures and laws have only a few dozen operations, so a call and the copy of its result would double their cost.
 #define STEPLAP_INLINE [[gnu::always_inline]] inline
 
 namespace steplap {
@@ -25,7 +25,8 @@ template <class S> STEPLAP_INLINE void set_angle(Motion<S>& m, const std::type_i
   m.theta = theta;
   const S z = theta * theta;
   if (z < 0.04) [[likely]] {
-    // Evaluated in pairs (Estrin's scheme), because the whole evaluation depends on it and short dependency chains finish earlier.
+    // The terms are summed in pairs (Estrin's scheme), which gives shorter chains of dependent operations. All else in an evaluation waits
+    // for this result.
     const S z2 = z * z;
     m.c = 1.0 - z * ((1.0 / 2.0 - z * (1.0 / 24.0)) +
                      z2 * ((1.0 / 720.0 - z * (1.0 / 40320.0)) + z2 * (1.0 / 3628800.0 - z * (1.0 / 479001600.0))));
@@ -62,7 +63,7 @@ template <class S> STEPLAP_INLINE S cross(const Pair<S>& a, const Pair<S>& b) { 
 /// Returns ẑ × a.
 template <class S> STEPLAP_INLINE Pair<S> perp(const Pair<S>& a) { return {-a.y, a.x}; }
 
-/// Returns a vector fixed in the body, in ground axes.
+/// Returns a vector that is given in body axes, in ground axes.
 template <class S> STEPLAP_INLINE Pair<S> to_ground(const Motion<S>& body, const Vec2& local) {
   return {body.c * local.x() - body.s * local.y(), body.s * local.x() + body.c * local.y()};
 }
@@ -77,7 +78,8 @@ template <class S> STEPLAP_INLINE Pair<S> offset(const Motion<S>& a, const Motio
 template <class S> STEPLAP_INLINE S relative_angle(const Motion<S>& a, const Motion<S>& b) { return a.theta - b.theta; }
 template <class S> STEPLAP_INLINE S relative_spin(const Motion<S>& a, const Motion<S>& b) { return a.omega - b.omega; }
 
-/// Replaces body b if the motion of a is relative to b (link.h). All terms of b's own motion then vanish at compile time.
+/// Takes the place of body b in a measure when the motion of a is relative to b (link.h). All terms with the motion of b then vanish at
+/// compile time.
 struct Origin {};
 struct Still {}; ///< zero velocity
 

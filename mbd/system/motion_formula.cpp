@@ -341,7 +341,7 @@ std::vector<SwitchScale> scales_of(const MotionFormula& formula, const Evaluatio
   FormulaProgram::Bits bits{0, 0};
   formula.find_bits(e, own, bits);
   const std::vector<double> gains = formula.gains(e, own, bits.values);
-  // Differences of numbers that have underflowed, such as of exp(-800), change their sign with each of their few digits.
+  // Numbers that have underflowed, such as exp(−800), have only a few digits left, and their differences change sign at random.
   constexpr double k_underflow = 1e-290;
   std::vector<SwitchScale> scales(gains.size(), {1.0, k_underflow});
   for (std::size_t s = 0; s < gains.size(); ++s)

@@ -24,7 +24,7 @@
 
 namespace steplap {
 
-/// One operand of a motion formula.
+/// One operand of a formula: a name that was resolved.
 struct MotionOperand {
   enum class Kind : unsigned char { own_value, own_rate, coordinate, measure, state, signal };
   Kind kind = Kind::own_value;
@@ -53,28 +53,31 @@ template <class S> struct OwnCoordinate {
 /// A compiled formula of motions, signals, own states and time.
 class MotionFormula {
 public:
-  /// Compiles the formula. Errors are reported to the builder; is_valid() is then false. To be called at stage 1.
+  /// Compiles the formula. Errors are reported to the builder, and is_valid() is then false. Precondition: all elements of stage 0 are
+  /// compiled, since names may refer to their channels.
   MotionFormula(SystemBuilder& builder, const MotionFormulaText& text);
 
   [[nodiscard]] bool is_valid() const { return !programs_.empty(); }
   [[nodiscard]] const FormulaProgram& program() const { return programs_.front(); }
-  /// Returns the tree from which the program was made.
+  /// Returns the merged tree of the formula and all formulas in it.
   [[nodiscard]] const FormulaTree& tree() const { return tree_; }
   [[nodiscard]] const std::vector<MotionOperand>& operands() const { return operands_; }
-  /// Returns the bodies whose motion the formula reads, in addition to those of the own coordinate.
+  /// Returns the bodies whose motion the formula reads, without those of the element's own coordinate.
   [[nodiscard]] const std::vector<int>& bodies() const { return bodies_; }
 
-  /// Adds the angles on which the formula depends nonlinearly, except its own coordinate.
+  /// Adds the angles on which the formula depends nonlinearly to `turns`, except the element's own coordinate.
   void register_turns(TurnTable& turns) const;
 
-  /// Returns the value. `at_time(signal)` returns the value of a signal; `quantity` receives the switch quantities, as in FormulaProgram.
+  /// Returns the value of the formula for given switch bits. at_time(signal) returns the value of a signal; `quantity` receives the switch
+  /// quantities as in FormulaProgram::evaluate().
   template <class S, class AtTime>
   S value(const EvaluationData<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, SwitchBits bits, S* quantity) const;
-  /// Sets the bits of its switches for the current values, except those already given.
+  /// Determines the bits of the formula's switches from the current motion, except those marked as given.
   void find_bits(const Evaluation& e, const OwnCoordinate<double>& own, FormulaProgram::Bits& bits) const;
-  /// Returns the value; writes its derivatives by all operands to `derivatives`, one number each.
+  /// Returns the value, and writes its derivatives with respect to all operands, in the order of operands(), to `derivatives`.
   double differentiate(const Evaluation& e, const OwnCoordinate<double>& own, SwitchBits bits, double* derivatives) const;
-  /// Returns for each switch the sum of absolute derivatives of its quantity by positions and velocities, at least a small positive number.
+  /// Returns for each switch how fast its quantity changes with the motion: the sum of its absolute derivatives by positions and
+  /// velocities, at least a small positive number.
   [[nodiscard]] std::vector<double> gains(const Evaluation& e, const OwnCoordinate<double>& own, SwitchBits bits) const;
 
 private:
@@ -87,33 +90,34 @@ private:
   FormulaTree tree_;
 };
 
-/// A formula in the equations of motion, with the values of its names `value` and `rate`; `own` is null if it has no own coordinate.
+/// A formula in the equations of motion. `own` computes the values of its names `value` and `rate`; null if its element has no coordinate
+/// of its own.
 struct FormulaInMotion {
   const MotionFormula* formula = nullptr; ///< owned by its group
   std::function<OwnCoordinate<double>(const Evaluation& e)> own = nullptr;
   int unit = -1; ///< index of its mode, the bits of its switches; -1 if it has none
 };
 
-/// Derivatives of an operand by pose and velocity of one body.
+/// Derivatives of an operand with respect to pose and velocity of one body.
 struct MotionShare {
   int body = k_ground;
   Vec3 pose = Vec3::Zero(), velocity = Vec3::Zero();
 };
-/// Returns the derivatives of an operand that is neither state nor signal. `own` is the element's coordinate as dual numbers of poses and
-/// velocities of `own_a` and `own_b`.
+/// Returns the derivatives of an operand with respect to poses and velocities of at most two bodies; not for states and signals. `own` is
+/// the element's own coordinate as dual numbers of the motions of `own_a` and `own_b`.
 [[nodiscard]] std::array<MotionShare, 2> shares_of(const MotionOperand& operand, const Evaluation& e, const OwnCoordinate<Dual<12>>& own,
                                                    int own_a, int own_b);
 
-/// Conversion of a switch quantity to an event function: weight · quantity + slack.
+/// Factors that convert a switch quantity to an event function: weight · quantity + slack.
 struct SwitchScale {
   double weight = 1.0; ///< of |a|, min and max: scales the quantity to a change of positions and velocities
   double slack = 0.0;  ///< allowed violation, since constrained quantities are zero only up to rounding
 };
-/// Initialises the quantities before an evaluation: switches that are not evaluated are far from switching.
+/// Sets the quantities before an evaluation to 1 or −1, in accordance with `bits`, so that switches that are not evaluated do not trigger.
 template <class S> void preset_quantities(int count, SwitchBits bits, S* quantity) {
   for (int s = 0; s < count; ++s) quantity[s] = S(((bits >> static_cast<unsigned>(s)) & 1U) != 0 ? 1.0 : -1.0);
 }
-/// Computes the event functions after an evaluation; they are ≥ 0 while the bits are valid.
+/// Computes the event functions from the quantities. They are ≥ 0 while `bits` are valid.
 template <class S>
 void switch_events(SwitchBits bits, const S* quantity, const std::vector<SwitchScale>& scales, S* event_value, S* event_derivative) {
   for (std::size_t s = 0; s < scales.size(); ++s) {
@@ -122,16 +126,17 @@ void switch_events(SwitchBits bits, const S* quantity, const std::vector<SwitchS
     event_derivative[s] = S(std::numeric_limits<double>::quiet_NaN());
   }
 }
-/// Returns one scale per switch, for the current motion.
+/// Returns the bits after the event function of switch `slot` became negative: that bit is inverted, and bits of switches that are
+/// evaluated only now are determined from the motion.
 [[nodiscard]] SwitchBits next_bits(const MotionFormula& formula, SwitchBits bits, int slot, const Evaluation& e,
                                    const OwnCoordinate<double>& own);
-/// Per switch, from where the motion is.
+/// Returns the scale of each switch for the present motion.
 [[nodiscard]] std::vector<SwitchScale> scales_of(const MotionFormula& formula, const Evaluation& e, const OwnCoordinate<double>& own);
 
 /// Returns a signal that represents the time t itself.
 [[nodiscard]] const Signal& clock_signal();
 
-/// Value of a signal in an evaluation with doubles, and on a tape.
+/// Evaluates signals at time t: as doubles (this struct), or as inputs of a tape (the next one).
 struct NumericSignalEvaluator {
   double t;
   double operator()(const Signal& signal) const { return &signal == &clock_signal() ? t : signal.value(t); }

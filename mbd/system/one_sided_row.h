@@ -1,13 +1,13 @@
-// Unilateral distance constraint: an inextensible rope, which pulls but does not push. Its length is a distance of two points, or a sum of
-// such distances over moving pulleys (RowSpec::next).
+// Unilateral distance constraint: an inextensible rope, which pulls but does not push. Its length is the distance of two points, or a sum
+// of such distances if the rope runs over moving pulleys (RowSpec::next).
 //
-// The row is activated and deactivated like those of friction, so the class is a friction element with two phases:
+// The row becomes active and inactive like a friction row, so the class is a friction element with two phases:
 //
 //   stick   taut: the length is a constraint, the tension T = −λ its multiplier; valid while T ≥ 0
 //   slip    slack: no force; valid while the length is below that of the rope
 //
-// The tension has no upper bound, so a taut rope never slips like friction. When a slack rope becomes taut with a positive rate, velocities
-// jump (mbd/events/blow.h), and the impulse is stored in State::impacts.
+// The tension has no upper bound, so a taut rope never slips. When a slack rope becomes taut while its ends separate, velocities jump
+// (mbd/events/blow.h); the impulse is stored in State::impacts.
 #pragma once
 
 #include "mbd/system/bounded_friction.h"
@@ -30,8 +30,8 @@ public:
   static constexpr double k_too_long = 1e-6;   ///< relative: excess of length that is accepted as rounding in the model file
   static constexpr double k_least_part = 1e-6; ///< relative: a shorter straight part has run onto its pulley
 
-  static constexpr FrictionWatch k_on_pulley = FrictionWatch::second;             ///< of a taut rope
-  static constexpr FrictionWatch k_length_reached = FrictionWatch::contact_point; ///< of a slack rope
+  static constexpr FrictionWatch k_on_pulley = FrictionWatch::second;             ///< of a taut rope: a straight part is too short
+  static constexpr FrictionWatch k_length_reached = FrictionWatch::contact_point; ///< of a slack rope: it has reached its length
 
   RowSpec row;               ///< the first distance; its base is the length of the rope
   double length = 0.0;       ///< length of the rope, m
@@ -40,7 +40,7 @@ public:
   int impact = 0;            ///< index in State::impacts
   std::vector<std::pair<std::string, std::string>> points; ///< names of the end points of each part
 
-  /// Sets the distances that make up the length, at least one.
+  /// Sets the distances whose sum is the length; at least one.
   void set_parts(std::vector<RowSpec> parts) {
     further_.assign(parts.begin() + 1, parts.end());
     row = parts.front();
@@ -66,7 +66,8 @@ public:
     });
     return shortest;
   }
-  /// Returns the sum of the absolute velocities of all its points, m/s; the rounding error of its rate is proportional to it.
+  /// Returns the sum of the absolute velocities of all end points of the parts, m/s. The rounding error of the row's rate is proportional
+  /// to it.
   [[nodiscard]] double speed(const Motion<double>* motion) const {
     const auto of_point = [](const Motion<double>& m, const Pair<double>& lever) {
       return std::abs(m.vx - m.omega * lever.y) + std::abs(m.vy + m.omega * lever.x);
@@ -92,7 +93,8 @@ public:
   [[nodiscard]] WrenchBounds bounds(const Evaluation&, const FrictionState&, bool /*kinetic*/) const override {
     return {-std::numeric_limits<double>::infinity(), 0.0};
   }
-  /// Zero, the power of a rope: a taut one has no rate, a slack one no force. The support function of (−∞, 0] would be infinite.
+  /// Returns the power of the rope, which is zero: a taut rope has no rate, a slack rope no force. The support function of (−∞, 0] would be
+  /// infinite.
   [[nodiscard]] double support(const Evaluation&, const FrictionState&, const double*) const override { return 0.0; }
   void stick_events(const Evaluation& e, const FrictionState&, const double* wrench, double* event_value) const override {
     event_value[0] = rest_tension - wrench[0];
@@ -106,7 +108,8 @@ public:
   }
   void set_onset_direction(const Evaluation&, FrictionState&, const double*) const override {}
   void aim(FrictionState& state, const double*) const override { state.sign = 0; }
-  /// As for every interval, but where drives determine the length (a = 0), the tension is zero, not infinite.
+  /// Solves the mode problem as for any interval, except if drives determine the length (a = 0): then the tension is zero instead of
+  /// infinite.
   [[nodiscard]] BlockSolution solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b,
                                           bool /*kinetic*/) const override {
     BlockSolution block;
@@ -125,13 +128,13 @@ struct OneSidedUnit {
   const OneSidedRow* row = nullptr;
   std::size_t friction = 0;
 };
-/// Returns a range over all one-sided rows, in the order of the friction elements. `system` must outlive it.
+/// Returns a range over all ropes, in the order of the friction elements. `system` must outlive it.
 [[nodiscard]] inline auto one_sided_rows(const System& system) {
   const auto of = [&system](std::size_t f) { return OneSidedUnit{system.frictions[f].rope, f}; };
   return std::views::iota(std::size_t{0}, system.frictions.size()) | std::views::transform(of) |
          std::views::filter([](const OneSidedUnit& unit) { return unit.row != nullptr; });
 }
-/// Returns the first one-sided row, or null.
+/// Returns the first rope; null if there is none.
 [[nodiscard]] inline const OneSidedRow* first_one_sided_row(const System& system) {
   for (const OneSidedUnit& unit : one_sided_rows(system)) return unit.row;
   return nullptr;

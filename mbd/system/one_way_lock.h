@@ -1,7 +1,7 @@
-// A one-dimensional friction element that holds any force against one direction of its rate: a one-way clutch.
+// One-way clutch: a one-dimensional friction element that resists motion in one direction without a limit of force.
 //
-// A bounded friction force cannot reverse a velocity instantaneously, but an unbounded one can. If its bodies start to move in the locked
-// direction, or a blow makes them do so, an impulse stops the relative motion, as for ropes (mbd/events/blow.h).
+// A bounded friction force cannot reverse a velocity instantaneously, but an unbounded one can. If the bodies are made to move in the
+// locked direction, for example by an impact, an impulse stops the relative motion, as for ropes (mbd/events/blow.h).
 #pragma once
 
 #include "mbd/system/one_sided_row.h"
@@ -20,12 +20,12 @@ public:
   [[nodiscard]] virtual double drag() const = 0;
 };
 
-/// Returns the element as a one-way lock, or null if it is another kind of friction or has finite bounds.
+/// Returns the element as a one-way clutch that locks; null for other kinds of friction, and for clutches with finite bounds.
 [[nodiscard]] inline const OneWayLock* one_way_lock(const FrictionUnit& unit) {
   return unit.clutch && unit.clutch->refuses() != 0 ? unit.clutch : nullptr;
 }
 
-/// Returns the index in State::impacts; −1 for elements without impacts.
+/// Returns the index of the element in State::impacts; −1 for elements without impacts.
 [[nodiscard]] inline int impact_index(const FrictionUnit& unit) {
   if (unit.rope) return unit.rope->impact;
   const OneWayLock* const lock = one_way_lock(unit);

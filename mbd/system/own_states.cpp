@@ -11,7 +11,7 @@ namespace {
 
 constexpr OwnCoordinate<double> k_no_coordinate{};
 
-// Returns the largest radius of gyration of the bodies, as used for error scales.
+// Returns the largest radius of gyration of the bodies, m, which error scales use; 1 if there are no masses.
 double length_of(const Model& model) {
   double length = 0.0;
   for (const Body& body : model.bodies)

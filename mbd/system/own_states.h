@@ -34,12 +34,12 @@ struct StatePlace {
   int inner = 0;     ///< index in State::inner
   double unit = 1.0; ///< SI value of one unit in State::inner
 };
-/// Returns the index of a state. The first call assigns indices to all states of the model.
+/// Returns index and unit of a state. The first call assigns indices to all states of the model.
 [[nodiscard]] StatePlace place_of_state(SystemBuilder& builder, const OwnState& state);
-/// Returns the initial values in State::inner, up to the last own state.
+/// Returns initial values of State::inner, up to the last of these states.
 [[nodiscard]] std::vector<double> start_of_states(SystemBuilder& builder);
 
-/// All own states of a model, as a force group without forces.
+/// All [[state]] variables of a model, as a force group that applies no forces.
 class OwnStateGroup final : public ForceGroup {
 public:
   struct ElementData {
@@ -70,7 +70,7 @@ private:
   template <class S, class AtTime> void add_rates(EvaluationData<S>& e, const AtTime& at_time) const;
 };
 
-/// Returns the own states of the system, or nullptr.
+/// Returns the group of [[state]] variables of the system; nullptr if it has none.
 [[nodiscard]] const OwnStateGroup* own_state_group(const System& system);
 
 } // namespace steplap

@@ -6,7 +6,7 @@
 
 namespace steplap {
 
-/// A position and an orientation on a body, relative to its centre of gravity and in its axes.
+/// A point and an orientation on a body, given relative to its centre of gravity and in its axes.
 struct Place {
   const Body* body = nullptr; ///< null: the ground
   Vec2 point = Vec2::Zero();  ///< m
@@ -19,7 +19,7 @@ struct Place {
 [[nodiscard]] Vec3 pose_of(const System& system, const State& state, const Body* body);
 /// Returns the body's index in the system; k_ground for nullptr.
 [[nodiscard]] int index_of(const System& system, const Body* body);
-/// Returns true if a contact of this element is pressed, or held beyond the end of its face.
+/// Returns true if the contact of this element is closed, that is, if its mode is not `open`.
 [[nodiscard]] bool is_closed(const System& system, const State& state, const std::string& element);
 
 } // namespace steplap

@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* k_whole = "whole";
 
-// Power dissipated and supplied by one element at a snapshot.
+// Power that one element dissipates, and power that it supplies, W.
 struct ElementPower {
   double dissipation = 0.0, work = 0.0;
 };
@@ -57,7 +57,7 @@ double power_of_friction(const System& system, std::size_t f, const Snapshot& s)
   return power;
 }
 
-// Returns true if the friction element has a contact point that slides along a face.
+// Returns true for friction whose contact point moves along a face, so that its slide must be integrated.
 bool has_slide(const FrictionUnit& unit) {
   const FrictionState any{};
   return unit.friction->dimension() == 1 && unit.friction->rows(any)->kind == MeasureKind::slide;
@@ -69,7 +69,7 @@ double slip_rate(const System& system, std::size_t f, const Snapshot& s) {
   return evaluate_row<false>(*system.frictions[f].friction->rows(state), s.motion).rate;
 }
 
-// Channels of single elements that are made here: energies, and the slide of friction whose contact point is not always the same.
+// Names of the channels of single elements that this file makes.
 constexpr const char* k_of_elements[] = {"dissipated", "stored", "work", "slide"};
 
 bool wants_shares(const std::vector<std::string>* wanted) {
@@ -78,7 +78,7 @@ bool wants_shares(const std::vector<std::string>* wanted) {
          });
 }
 
-// Returns true for states and actions.
+// Returns true for groups that store, dissipate and supply no energy: states and actions.
 bool has_no_energy(const ForceGroup& group) {
   return dynamic_cast<const OwnStateGroup*>(&group) != nullptr || dynamic_cast<const ActionGroup*>(&group) != nullptr;
 }
@@ -113,7 +113,7 @@ RequestedChannels::RequestedChannels(SystemBuilder& builder)
   names.erase(std::unique(names.begin(), names.end()), names.end());
 }
 
-// Channels that formulas of elements read must exist, too.
+// Requests the channels that formulas of elements read.
 void RequestedChannels::note_operands_of_elements() {
   for (const ElementEntry& entry : model_.elements)
     for (const std::string& name : names_in_formulas(entry)) builder_.operand_names_.push_back(name);
@@ -201,7 +201,7 @@ void RequestedChannels::end_inactive_element(System& acting) {
   shares_.push_back(std::move(share));
 }
 
-// An inactive element keeps the energies that it had.
+// Adds the energy channels of an inactive element. Their values stay what they were when the element became inactive.
 void RequestedChannels::add_inactive_share(const Share& share) {
   const auto none = [](const Snapshot&) { return 0.0; };
   if (share.dissipates) add_integral(share, "dissipated", "J", "energy that it has turned into heat since the start", {none, {}});
@@ -218,8 +218,8 @@ void RequestedChannels::add_integral(const Share& share, const char* name, const
   if (made) system.integrands.push_back(std::move(integrand));
 }
 
-// Adds the slide of an element whose contact point changes (polygon_contact): the integral of its slip rate. A coordinate would jump where
-// another point takes over. Elements with fixed contact points have made a channel of that name themselves.
+// Adds the slide of an element whose contact point changes (polygon_contact), as the integral of its slip rate. A coordinate would jump
+// when the contact point changes. Elements with fixed contact points have a channel of this name already.
 void RequestedChannels::add_slide(const Share& share) {
   const System* const self = builder_.system_.get();
   const std::string name = self->element_names[share.element] + ".slide";
@@ -353,7 +353,8 @@ void RequestedChannels::add_whole() {
 
 const Channel* RequestedChannels::find(const std::string& name) const { return made_channel(builder_, name); }
 
-// Returns the channel with this name. A name with a unit, as in the header of trajectory.csv, is accepted if it is the channel's unit.
+// Returns the channel that formula `d` calls `name`. A name with its unit, as in the header of trajectory.csv, is accepted if the unit is
+// right. Throws ModelError if there is no such channel.
 const Channel& RequestedChannels::operand(const DefinedChannel& d, const std::string& name) const {
   if (const Channel* exactly = find(name)) return *exactly;
   const std::string subject = "channel '" + d.name + "'", bare = without_unit(name);
@@ -367,7 +368,8 @@ const Channel& RequestedChannels::operand(const DefinedChannel& d, const std::st
   return *found;
 }
 
-// Returns the unit of the channel and the factor from SI to this unit.
+// Returns the unit of a formula channel, and the factor from SI to this unit. Throws ModelError if the unit given in the model does not fit
+// the formula.
 std::pair<std::string, double> RequestedChannels::unit_of(const DefinedChannel& d, const UnitDimension& derived) {
   const std::string subject = "channel '" + d.name + "'";
   if (d.unit.empty()) {
@@ -390,7 +392,7 @@ void RequestedChannels::refuse_as_too_large(const DefinedChannel& d, const std::
   throw ModelError(d.place("expression"), "channel '" + d.name + "': " + what + ": name fewer, or define them by elements' channels");
 }
 
-// Adds a formula, after the formulas that it uses. `depth`: number of formulas in the chain that leads to it.
+// Adds the channel of a formula, after those of the formulas that it uses. `depth`: number of formulas that lead to this one.
 void RequestedChannels::add_formula(Defined& formula, int depth) {
   const DefinedChannel& d = *formula.definition;
   if (formula.mark == Defined::Mark::done) return;
@@ -477,7 +479,7 @@ void RequestedChannels::check_patterns() {
   }
 }
 
-// Returns true if a channel wanted by name has not been made by elements and bodies.
+// Returns true if a requested channel does not exist after elements and bodies are compiled.
 bool RequestedChannels::is_anything_missing() const {
   return builder_.wanted_ &&
          std::any_of(builder_.wanted_->begin(), builder_.wanted_->end(), [this](const std::string& name) { return !find(name); });
@@ -491,7 +493,7 @@ void RequestedChannels::add() {
     if (share.acts) add_slide(share);
   }
   add_whole();
-  if (!builder_.errors_.empty()) return; // after errors, channels of elements may be missing
+  if (!builder_.errors_.empty()) return; // after errors, elements may be without their channels
   add_formulas();
   check_names();
   if (!builder_.wanted_) check_patterns();

@@ -23,17 +23,17 @@ public:
   /// Parses the formulas. Errors are reported to the builder.
   explicit RequestedChannels(SystemBuilder& builder);
 
-  /// To be called before and after the compilation of an element; determines which parts of the system belong to it.
+  /// Called before and after an element is compiled, to determine which parts of the system belong to the element.
   void begin_element();
   void end_element();
-  /// As end_element(), for an inactive element, whose energies are constant. `acting` is the system being made.
+  /// Replaces end_element() for an inactive element, whose energies are constant. `acting` is the system being compiled.
   void end_inactive_element(System& acting);
-  /// Adds the requested channels. To be called after all elements are compiled.
+  /// Adds the requested channels. Precondition: all elements are compiled.
   void add();
 
-  /// Returns a channel made by an element compiled before, or nullptr.
+  /// Returns the channel with this name among those of the elements compiled so far; nullptr if there is none.
   [[nodiscard]] static const Channel* made_channel(const SystemBuilder& builder, const std::string& name);
-  /// Returns the names of channels that are measures (measured_channel.h).
+  /// Returns the names of the channels that are measures (measured_channel.h), which formulas in the equations of motion may use.
   [[nodiscard]] static std::vector<std::string> measured_names(const SystemBuilder& builder);
 
 private:
@@ -77,11 +77,11 @@ private:
   const Model& model_;
   std::vector<Defined> formulas_;
   std::vector<Share> shares_;
-  std::vector<std::size_t> counts_; ///< number of entries in each group before the current element
+  std::vector<std::size_t> counts_; ///< number of entries in each group before the current element was compiled
   std::size_t rows_ = 0, frictions_ = 0;
   bool has_requests_;          ///< the model requests channels
-  bool wants_shares_;          ///< channels of single elements may be among them
-  std::size_t operations_ = 0; ///< of all formulas, each with those that it names
+  bool wants_shares_;          ///< energies of single elements may be requested
+  std::size_t operations_ = 0; ///< number of operations of all formulas; a formula includes those of the formulas that it uses
   bool is_beyond_limits_ = false;
 };
 

@@ -11,7 +11,8 @@
 
 namespace steplap {
 
-/// Relative rounding error of a measure: positions and velocities result from a few rotations and sums, each rounding terms of this size.
+/// Relative rounding error of a measure. Positions and velocities result from a few rotations and sums of terms; each operation rounds a
+/// term.
 inline constexpr double k_rounded_sum = 32.0 * std::numeric_limits<double>::epsilon();
 
 /// Residual of joints, m, rad, m/s, rad/s: values below it count as zero. It is ten times the default residual after projection
@@ -27,7 +28,7 @@ template <class S> [[nodiscard]] S size(const Pair<S>& p) {
 
 } // namespace rounding
 
-/// Returns a bound of the rounding error of a measure's value. An error of an angle moves the end of its lever. `m` may be relative to a
+/// Returns a bound of the rounding error of a measure's value. An error of an angle displaces the end of a lever. `m` may be relative to a
 /// link's frame.
 template <class S> [[nodiscard]] S value_rounding(const MeasureValue<S>& m, const Motion<S>& a, const Motion<S>& b) {
   using rounding::size;

@@ -45,7 +45,7 @@ struct RowSpec {
   const RowSpec* next = nullptr; ///< next part of the same row; of a part only bodies and measure are used
 };
 
-/// Rolling and skates are rare. They are not inlined, so that loops over other rows remain short.
+/// Evaluates rolling and skates. These are rare and therefore not inlined, so that loops over other rows remain short.
 template <bool WithBias, class S, class B>
 [[gnu::noinline]] MeasureValue<S> evaluate_rare(const RowSpec& row, const Motion<S>& a, const B& b) {
   if (row.kind == MeasureKind::skate) return SkateMeasure{row.point_a, row.direction}.at<WithBias>(a, b);
@@ -53,7 +53,7 @@ template <bool WithBias, class S, class B>
   return RollRoundMeasure{row.point_a, row.point_b, row.direction, row.radius_a, row.radius_b}.at<WithBias>(a, b);
 }
 
-/// Returns the measure of a relative to b, which is another body's motion, or Origin if a is given relative to b.
+/// Returns the measure of the row for the motions a and b. If a is given relative to b, pass Origin as b.
 template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> evaluate_row(const RowSpec& row, const Motion<S>& a, const B& b) {
   switch (row.kind) {
   case MeasureKind::axis: return AxisMeasure{row.point_a, row.point_b, row.direction}.at<WithBias>(a, b);
@@ -67,8 +67,8 @@ template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> evalua
   return SlideMeasure{row.point_a, row.point_b, row.direction, row.contact_axis, row.is_axis_in_a}.at<WithBias>(a, b);
 }
 
-/// Returns the sum of value, rate and bias over the parts of a row. There is no common direction, so it is NaN; gradients are those of the
-/// parts.
+/// Returns the sums of value, rate and bias over the parts of a row. The direction is NaN, since the parts have different ones; gradients
+/// must be taken from the parts.
 template <bool WithBias> [[gnu::noinline]] MeasureValue<double> evaluate_parts(const RowSpec& row, const Motion<double>* motion) {
   MeasureValue<double> sum;
   for (const RowSpec* part = &row; part; part = part->next) {
@@ -87,7 +87,7 @@ template <bool WithBias> STEPLAP_INLINE MeasureValue<double> evaluate_row(const 
   return evaluate_row<WithBias>(row, motion[row.a], motion[row.b]);
 }
 
-/// Returns value, rate and acceleration that the row prescribes at time t.
+/// Returns value, rate and acceleration that the row prescribes for its measure at time t.
 inline SignalJet row_target(const RowSpec& row, const RowBase* bases, double t) {
   SignalJet target;
   if (row.base >= 0) target.value = bases[row.base].value;
@@ -101,8 +101,8 @@ inline SignalJet row_target(const RowSpec& row, const RowBase* bases, double t) 
   return target;
 }
 
-/// Returns value − target. The angle in the rolling of two circles is known only up to whole turns, so the difference is reduced to half a
-/// turn. A sticking or bilateral row is never off by more.
+/// Returns value − target. In rolling of two circles the value is known only up to whole turns, so the result is reduced to the range of ±
+/// half a turn.
 inline double off_target(const RowSpec& row, double value, double target) {
   if (row.kind != MeasureKind::roll_round) return value - target;
   return std::remainder(value - target, 2.0 * std::numbers::pi * (row.radius_a + row.radius_b));

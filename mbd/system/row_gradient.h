@@ -11,7 +11,7 @@
 
 namespace steplap {
 
-/// Writes the three components for one side (0: a, 1: b); `lever` is r.
+/// Writes the three components of the gradient for side 0 (a) or 1 (b) to j; `lever` is r.
 template <class S> STEPLAP_INLINE void put_gradient(const MeasureValue<S>& m, int side, const Pair<S>& lever, S* j) {
   const S couple = cross(lever, m.direction) + m.couple;
   j[0] = side == 0 ? m.direction.x : -m.direction.x;
@@ -20,7 +20,7 @@ template <class S> STEPLAP_INLINE void put_gradient(const MeasureValue<S>& m, in
 }
 
 template <class S> struct RowGradient {
-  S j[6]; ///< by x, y, θ of a, then of b
+  S j[6]; ///< derivatives by x, y, θ of a, then of b
   [[nodiscard]] const S* side(int s) const { return j + 3 * s; }
 };
 

@@ -6,7 +6,7 @@
 
 namespace steplap {
 
-/// Additional interface of a ForceGroup with such units.
+/// Additional interface of a ForceGroup whose modes include friction.
 class SlidingUnits {
 public:
   SlidingUnits() = default;
@@ -14,11 +14,11 @@ public:
   SlidingUnits& operator=(const SlidingUnits&) = delete;
   virtual ~SlidingUnits() = default;
 
-  /// Returns the event that begins the sliding of this mode (such as `slips_forward`); `none` if it does not slide.
+  /// Returns the event that is reported when sliding begins in this mode, such as `slips_forward`; `none` if the mode does not slide.
   [[nodiscard]] virtual EventKind sliding_in(UnitMode mode) const = 0;
 };
 
-/// The same for a unit of any group; `none` if it has no friction of its own.
+/// Returns SlidingUnits::sliding_in() for a unit of any group; `none` if its modes do not include friction.
 [[nodiscard]] inline EventKind sliding_of(const ForceGroup& group, UnitMode mode) {
   const auto* const sliding = dynamic_cast<const SlidingUnits*>(&group);
   return sliding ? sliding->sliding_in(mode) : EventKind::none;

@@ -1,4 +1,4 @@
-// Threshold for negligible forces in a row, used where no bound of friction defines a scale.
+// Threshold below which a force in a row is negligible, for rows without a friction bound that could serve as a scale.
 #pragma once
 
 #include "mbd/system/system.h"

@@ -1,7 +1,7 @@
-// Tolerance of the run, for slip laws that depend on it.
+// Tells slip laws the tolerance of the run.
 //
 // The onset and end of slip in a step-lap joint are resolved only as accurately as the tolerance requires. A run with a finer tolerance
-// neglects less, so error estimates by finer runs include the neglected part.
+// neglects less, so that error estimates by finer runs include what is neglected.
 #pragma once
 
 #include "mbd/system/roles.h"
@@ -10,13 +10,13 @@
 
 namespace steplap {
 
-/// Base class of the scratch memory of such friction elements.
+/// Base class for the caches of friction elements whose slip law depends on the tolerance.
 struct SlipScratch : FrictionScratch {
-  /// Sets the relative tolerance. Not called for methods without a tolerance.
+  /// Sets the relative tolerance of the run. Not called for methods without a tolerance.
   virtual void follow(double tolerance) = 0;
 };
 
-/// Sets the tolerance of all friction elements of an evaluation.
+/// Passes the tolerance to the slip laws of all friction elements of an evaluation.
 inline void tell_slip_laws(const Evaluation& e, double tolerance, std::size_t frictions) {
   for (std::size_t f = 0; f < frictions; ++f)
     if (auto* scratch = dynamic_cast<SlipScratch*>(e.scratch[f])) scratch->follow(tolerance);

@@ -1,4 +1,4 @@
-// Jacobian terms of own states of the model (own_states.h), for implicit methods.
+// Derivatives of the rates of [[state]] variables (own_states.h), and of forces by them, for implicit methods.
 #pragma once
 
 #include "mbd/system/roles.h"
@@ -7,7 +7,7 @@
 
 namespace steplap {
 
-/// Derivatives as sparse lists, with states in the units of State::inner and all else in SI.
+/// Derivatives as sparse lists. Variables z are in the units of State::inner, all other quantities in SI.
 struct StateJacobian {
   struct ByMotion { ///< ∂ż/∂(pose of a body), ∂ż/∂(its velocity)
     int inner = 0, body = k_ground;

@@ -1,4 +1,4 @@
-// Contacts in which one body can get completely inside the other, where no force pushes it out.
+// Contacts in which one body can get completely inside the other, where the contact force no longer pushes it out.
 #pragma once
 
 #include "mbd/system/roles.h"
@@ -8,7 +8,8 @@
 
 namespace steplap {
 
-/// A group of such contacts. A run must stop when one body is inside the other, because the contact law is not valid there.
+/// Additional interface of a group of such contacts. A run must stop when one body is inside the other, because the contact law is not
+/// valid there.
 class SwallowingContacts {
 public:
   virtual ~SwallowingContacts() = default;

@@ -28,8 +28,8 @@ void place_bodies(const std::vector<double>& q, const std::vector<double>& v, st
   }
 }
 
-// A drive read as velocity or acceleration starts at the position of the body; one read as acceleration also starts with its velocity. A
-// drive read as position is absolute: its base is f(0), the part that Signal::drive() omits.
+// A drive given as velocity or acceleration starts at the position of the body; one given as acceleration also starts with the body's
+// velocity. A drive given as position is absolute: its base is f(0), which Signal::drive() subtracts.
 void start_drives(const System& system, State& state, const std::vector<char>* begins) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
@@ -137,7 +137,7 @@ void SystemBuilder::compile_bodies() {
   place_bodies(state.q, state.v, reference_);
 
   // Marker positions are relative to the centre of gravity. A marker on a fixed body becomes a point of the ground, so that fixed bodies
-  // need no computation.
+  // are not computed.
   const auto compiled = [&](const std::string& body_name, const std::optional<Vec2>& point, const std::optional<Vec2>& at, double angle) {
     CompiledMarker marker;
     marker.body = body_index_.at(body_name);
@@ -214,7 +214,7 @@ void SystemBuilder::compile_elements(RequestedChannels& requested) {
 
 namespace {
 
-// A contact that does not act: always open, zero normal force.
+// Contacts of inactive elements: always open, zero normal force.
 class InactiveContacts final : public ForceGroup {
 public:
   struct ElementData {
@@ -236,8 +236,8 @@ public:
 
 } // namespace
 
-// An inactive element is compiled into a temporary system that is then discarded. In this way its errors are found, and its channels exist:
-// they are zero, except for those that depend on the motion only. Elements that refer to it as a contact get an open one.
+// Compiles an inactive element into a temporary system, which is then discarded. Its errors are found in this way, and its channels exist:
+// zero, except those that depend on the motion only. Elements that refer to it as a contact get one that is always open.
 void SystemBuilder::compile_inactive(const ElementEntry& entry, RequestedChannels& requested) {
   auto aside = std::make_unique<System>();
   aside->bodies = system_->bodies;
@@ -467,7 +467,7 @@ int SystemBuilder::add_friction(std::unique_ptr<FrictionElement> friction) {
 
 namespace {
 
-// Measures of the motion continue; all other channels are zero.
+// Returns the function for a channel of an inactive element: unchanged if it is a measure of the motion, otherwise zero.
 std::function<double(const Snapshot&)> value_while_inactive(const std::function<double(const Snapshot&)>& value) {
   const auto* const measured = value.target<MeasuredValue>();
   if (!measured) return [](const Snapshot&) { return 0.0; };

@@ -83,12 +83,12 @@ struct ChannelText {
   ChannelText(const std::string& meaning_) : meaning(meaning_) {}
 };
 
-/// Quantities by which any element's channels are found, whatever its kind calls them.
+/// Meaning of a channel that is the same for all kinds of element, whatever the name of the channel.
 enum class ChannelRole : std::uint8_t {
-  none,         ///< another one
-  margin,       ///< of a joint: capacity over what is in use; below 1 it does not hold
-  friction_use, ///< force over the largest that friction holds at the same instant
-  strength_use, ///< force over the strength at which the element breaks
+  none,         ///< no such meaning
+  margin,       ///< capacity of a joint over its load; below 1 the joint does not hold
+  friction_use, ///< friction force over the largest one that friction can hold at that time
+  strength_use, ///< force over the strength of the element, at which it breaks
 };
 
 /// A named result of a run: a scalar function of the snapshot.
@@ -102,7 +102,7 @@ struct Channel {
   bool has_extremes = true;             ///< false if the value can be infinite
   std::string sign = {}, codes = {};    ///< as in ChannelText
   bool is_on_request = false;           ///< computed only if a model requests it
-  ChannelRole role = ChannelRole::none; ///< what it says of the element, for any kind
+  ChannelRole role = ChannelRole::none; ///< meaning for any kind of element
 };
 
 /// A power that a run integrates over time because a channel needs the integral (Snapshot::integrals).
@@ -139,7 +139,7 @@ class BoundedFriction;
 class OneSidedRow;
 class OneWayLock;
 
-/// A friction element with its indices in the arrays of a run.
+/// A friction element with its indices in the arrays of a run. The last three pointers give access to its type without a cast.
 struct FrictionUnit {
   std::unique_ptr<FrictionElement> friction; ///< never nullptr
   int row = 0;                               ///< index of its first component in Snapshot::friction_force
@@ -155,8 +155,8 @@ struct FrictionUnit {
   [[nodiscard]] FrictionWatch watch_of(int slot) const { return static_cast<FrictionWatch>(slot - first_event); }
 };
 
-/// Characteristic length and times of a scene. Thresholds such as "many events in a short time" scale with them, so that a scaled model gets
-/// the same result. Some tolerances do not use them yet (KNOWN_ISSUES.md).
+/// Characteristic length and times of a system. Thresholds such as "many events in a short time" are proportional to them, so that a scaled
+/// model gives the same result. Some tolerances do not use them yet (KNOWN_ISSUES.md).
 struct SceneUnits {
   double length = 1.0;   ///< largest radius of gyration √(J/m), m
   double duration = 1.0; ///< duration of the run, s
@@ -166,11 +166,11 @@ struct SceneUnits {
   [[nodiscard]] double time() const { return 1.0 / rate; }
 };
 
-/// A compiled model. It does not refer to the model and may be used by several threads at once.
+/// A compiled model. Keeps no reference to the model, and may be used by several threads at once.
 class System {
 public:
   System() = default;
-  System(const System&) = delete; // channels and rows refer to what it owns
+  System(const System&) = delete; // channels and rows contain pointers into the object
   System& operator=(const System&) = delete;
 
   std::string title;                                           ///< title of the model
@@ -233,8 +233,8 @@ private:
 /// Computes the motions of all bodies from q and v; `motion` has one entry per body.
 void place_bodies(const std::vector<double>& q, const std::vector<double>& v, std::vector<Motion<double>>& motion);
 
-/// Sets the bases of driven rows in `state` so that the drives start from the pose and velocity of `state`. `begins` restricts
-/// this to the marked elements (index as in System::element_names); null: all.
+/// Sets the bases of driven rows in `state` such that the drives start from the pose and velocity of `state`. If `begins` is not null, only
+/// drives of the elements marked in it (index as in System::element_names) are set.
 void start_drives(const System& system, State& state, const std::vector<char>* begins = nullptr);
 
 /// A marker after compilation: body, position relative to the centre of gravity, and angle.
@@ -249,14 +249,14 @@ struct ContactIndex {
   int force = 0, unit = 0; ///< in EvaluationData::contact_force; in System::units
 };
 
-/// Use of a signal by an element. A force is averaged exactly over a step of any length by the integral of the signal. A signal used in
-/// another way (a drive, a parameter of a law) must be resolved by the steps.
+/// Use of a signal by an element: as a force, or in any other way (`motion`: drives, parameters of laws). A force can be averaged exactly
+/// over a step of any length, by the integral of the signal. The other uses must be resolved by the steps.
 enum class SignalUse : unsigned char { motion, force };
 
-/// Interface for ElementKind::compile: resolves names and collects the parts of the system.
+/// Interface for ElementKind::compile. Resolves names, and collects the parts of the system that elements contribute.
 class SystemBuilder {
 public:
-  /// Makes only the channels named in `wanted`; null: all.
+  /// `wanted`: names of the channels to be made; null: all.
   SystemBuilder(const Model& model, const std::vector<std::string>* wanted);
 
   // --- references -------------------------------------------------------------------------------
@@ -270,9 +270,9 @@ public:
   [[nodiscard]] const Motion<double>& reference(int body) const { return reference_[body]; }
   /// Returns the position of the marker in the reference pose, ground axes, m.
   [[nodiscard]] Vec2 marker_position(const CompiledMarker& marker) const;
-  /// Returns the unit vector of `local`, given in the axes of the marker, in the axes of its body.
+  /// Returns a unit vector in the direction of `local`. `local` is in the axes of the marker, the result in the axes of its body.
   [[nodiscard]] Vec2 direction(const CompiledMarker& marker, const Vec2& local) const;
-  /// Returns the contact element compiled at an earlier stage; null if `element` is not a contact.
+  /// Returns the indices of a contact element compiled at an earlier stage; null if `element` is not a contact.
   [[nodiscard]] const ContactIndex* contact(const std::string& element) const;
   /// Returns the element of the model with this name, or nullptr.
   [[nodiscard]] const ElementEntry* element(const std::string& name) const;
@@ -291,33 +291,33 @@ public:
   [[nodiscard]] const System& compiled() const { return *system_; }
 
   // --- contributions ------------------------------------------------------------------------------
-  /// Returns the group of type Group, which is created on the first call. Elements append to its `entries`.
+  /// Returns the group of this type, created on the first call. Elements append themselves to its `entries`.
   template <class Group> Group& group();
-  /// Makes the last entry of the group a unit: assigns its mode and the indices of its event functions.
+  /// Makes the last entry of the group a unit, that is, an element with modes: sets its indices of mode and first event function.
   template <class Group> void add_unit(Group& group, int event_count);
   /// Adds a normal force for the current element and returns its index. The contact is pressed while `unit` is in mode 1.
   int add_contact(int unit);
-  /// States that the contact with this index continues beyond the end of the part at marker `b`: `points` of body a, in its axes, press on
-  /// the line through marker b with `normal`, in the marker's axes. `remedy` says, as a clause, how a model gives the face an end. Without an
-  /// outline of the part nothing is added.
+  /// Declares that a contact continues beyond the end of the part that carries it, for warnings (endless_face.h). The face is the line
+  /// through marker `b` with `normal`, in the marker's axes; `points` of body a, in its axes, press on it. `remedy` is a clause that says
+  /// how a model can give the face an end. Nothing is added if the part has no outline.
   void add_endless_face(int contact, int a, std::vector<Vec2> points, const std::string& b, const Vec2& normal, std::string remedy);
-  /// Adds a base of rows of the current element, with this initial value. Returns its index in State::bases.
+  /// Adds a base (RowSpec::base) for rows of the current element, with this initial value. Returns its index in State::bases.
   int add_base(double value = 0.0);
-  /// Adds the impacts of the current element. Returns their index in State::impacts.
+  /// Adds an entry for the impacts of the current element. Returns its index in State::impacts.
   int add_impacts();
-  /// Adds one internal state with initial value `start` for an element of `group`. Returns its index.
+  /// Adds one inner state of the current element, which belongs to `group`, with initial value `start`. Returns its index in State::inner.
   int add_inner(const ForceGroup& group, double start);
   /// Adds rows of the current element; `is_rigid` and `coordinate` as in RowBlock.
   void add_rows(std::vector<RowSpec> rows, bool is_rigid = false, int coordinate = -1);
   /// Adds a friction element and returns its index in System::frictions.
   int add_friction(std::unique_ptr<FrictionElement> friction);
-  /// Adds the channel "<element>.<name>". The reference is valid until the next channel is added. If the channel is not wanted, it is not
-  /// added; the reference then refers to a dummy.
+  /// Adds the channel "<element>.<name>" and returns a reference that is valid until the next channel is added. A channel that is not
+  /// wanted is not added; the reference is then to a dummy.
   template <class Value> Channel& add_channel(std::string_view name, std::string_view unit, const ChannelText& text, Value&& value);
-  /// Adds a channel that is computed only if the model requests it ([output] also, or a formula). Otherwise as add_channel().
+  /// Adds a channel that is computed only on request (`also` of [output], or a formula). Otherwise like add_channel().
   template <class Value> Channel& offer_channel(std::string_view name, std::string_view unit, const ChannelText& text, Value&& value);
-  /// Calls `work` when the rows of all joints are compiled, before the elements of the second stage. What it calls error() for is noted
-  /// at the current element. Not called for an element that does not act.
+  /// Calls `work` after the rows of all joints are compiled, and before the elements of stage 1. Errors in it are reported for the current
+  /// element. Not called for inactive elements.
   void after_joints(std::function<void()> work) {
     if (!acting_) after_joints_.emplace_back(element_, std::move(work));
   }
@@ -337,7 +337,7 @@ private:
   friend std::unique_ptr<System> compile(const Model& model, const std::vector<std::string>* wanted);
   friend class RequestedChannels;
   enum class Use { none, operand, channel };
-  struct GroupType { ///< functions of a group whose type is known only where it is created
+  struct GroupType { ///< functions that copy or classify a group whose type is known only where it is created
     const std::type_info* type;
     std::size_t (*count)(const ForceGroup& group);
     std::unique_ptr<ForceGroup> (*share)(const ForceGroup& group, std::size_t first, std::size_t count);
@@ -351,7 +351,7 @@ private:
   void compile_bodies();
   void compile_elements(RequestedChannels& requested);
   void compile_inactive(const ElementEntry& entry, RequestedChannels& requested);
-  /// Returns the system that signals and channels belong to, also while an inactive element is compiled into a temporary system.
+  /// Returns the system that owns signals and channels. While an inactive element is compiled into a temporary system, it is the real one.
   [[nodiscard]] System& acting() { return acting_ ? *acting_ : *system_; }
   void finish();
   void add_body_channels();
@@ -367,19 +367,19 @@ private:
   std::unordered_map<std::string, ContactIndex> contact_index_;
   std::vector<Diagnostic> errors_;
   int element_ = -1;
-  std::vector<std::pair<int, std::function<void()>>> after_joints_; ///< with the element that each belongs to
+  std::vector<std::pair<int, std::function<void()>>> after_joints_; ///< functions with the index of the element to which each belongs
   const std::vector<std::string>* wanted_;
   std::vector<std::string> operand_names_; ///< operands of formulas, sorted
   std::vector<GroupType> group_types_;     ///< one for each group of the system
-  System* acting_ = nullptr;               ///< the real system, while system_ is the temporary one of an inactive element
+  System* acting_ = nullptr;               ///< the real system while system_ is the temporary one of an inactive element; null otherwise
   Channel unwanted_;
 };
 
-/// Returns, per element of a completed model, whether it acts. An element that depends on another, such as a sheet interface on its joint,
-/// acts only if that one does.
+/// Returns for each element of a completed model whether it is active. An element that depends on another, such as a sheet interface on its
+/// joint, is active only if that one is.
 [[nodiscard]] std::vector<char> acting_elements(const Model& model);
 
-/// Compiles a completed model. Only the channels named in `wanted` are made; null: all. Throws ModelError with all errors found.
+/// Compiles a completed model. `wanted`: names of the channels to be made; null: all. Throws ModelError with all errors found.
 [[nodiscard]] std::unique_ptr<System> compile(const Model& model, const std::vector<std::string>* wanted = nullptr);
 
 // ---------------------------------------------------------------------------------------------
@@ -394,8 +394,8 @@ template <class Group> Group& SystemBuilder::group() {
   return static_cast<Group&>(*system_->groups[i]);
 }
 
-// A share is a copy of some entries with the same indices of modes, event functions and links. Groups with k_does_work do work; all others
-// only dissipate and store energy.
+// Returns the functions of a group type. A share is a copy of some entries of a group, with the same indices of modes, event functions and
+// links. Groups with k_does_work do work; all others only dissipate and store energy.
 template <class Group> SystemBuilder::GroupType SystemBuilder::type_of() {
   GroupType type{};
   type.type = &typeid(Group);

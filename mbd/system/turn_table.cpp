@@ -12,8 +12,8 @@ namespace steplap {
 namespace {
 
 constexpr double k_turn = 2.0 * std::numbers::pi;
-// A knot ahead that is nearer than this fraction of the interval counts as reached. Steps end slightly off a knot if the angular velocity
-// is not constant; an extra step for the remainder would give no information.
+// Fraction of the distance between knots: a knot ahead that is nearer counts as reached. If the angular velocity is not constant, steps end
+// slightly off a knot, and an extra step for the remainder would be useless.
 constexpr double k_reached = 0.02;
 constexpr double k_without_end = std::numeric_limits<double>::infinity();
 
@@ -23,7 +23,7 @@ TurnKnots::Interval TurnKnots::about(double x, double direction) const {
   const double turned = is_periodic ? k_turn * std::floor((x - at.front()) / k_turn) : 0.0;
   const auto after = static_cast<std::ptrdiff_t>(std::upper_bound(at.begin(), at.end(), x - turned) - at.begin());
   const auto last = static_cast<std::ptrdiff_t>(at.size()) - 1;
-  // Knots are continued periodically beyond both ends.
+  // Returns the angle of knot i; a periodic curve is continued beyond both ends.
   const auto knot = [&](std::ptrdiff_t i) {
     if (!is_periodic) return i < 0 ? -k_without_end : (i > last ? k_without_end : at[static_cast<std::size_t>(i)]);
     const std::ptrdiff_t turns = i < 0 ? -1 : i / last;
