@@ -24,7 +24,7 @@ struct Inequalities {
   VecX b;
 };
 
-// Minimises t over (z, t) by Newton's method on a logarithmic barrier.
+// Minimises the largest violation t of the inequalities over (z, t), by Newton's method on a logarithmic barrier.
 class LeastViolation {
 public:
   explicit LeastViolation(Eigen::Index dimension) : z_(VecX::Zero(dimension)) {}
@@ -70,7 +70,7 @@ private:
     return false;
   }
 
-  static constexpr double k_tie = 1e-9; // weight of |z|²/2: keeps unknowns near zero that no constraint determines
+  static constexpr double k_tie = 1e-9; // weight of |z|²/2, which keeps unknowns near zero that no inequality determines
   static constexpr double k_ln10 = 2.302585092994046;
   VecX z_;
   double t_ = 0.0;
@@ -106,7 +106,7 @@ private:
     for (int r = 0; r < static_cast<int>(statics_.rows().size()); ++r) (is_bounded(statics_.rows()[r]) ? bounded_ : hard_).push_back(r);
   }
 
-  // Determines the motions that the joints leave free, and the balance along them as A x = right, for x = (κ η, w).
+  // Determines the free motions η of the joints, and writes the balance of forces along them as A x = right, for x = (κ η, w).
   bool linearise() {
     statics_.evaluate(state_);
     statics_.collect_rows(state_);
@@ -179,7 +179,8 @@ private:
     normal_by_ = MatX(normal_.size(), unknowns);
     for (Eigen::Index i = 0; i < normal_.size(); ++i) normal_by_.row(i) = normals[static_cast<std::size_t>(i)].transpose();
   }
-  // Returns the capacity against increasing (side 0) or decreasing (side 1) rates. A freewheel has one of them only.
+  // Returns the friction capacity that resists increasing (side 0) or decreasing (side 1) values of the row. A freewheel resists on one
+  // side only.
   [[nodiscard]] double support(Eigen::Index i, int side) const {
     const double rate = side == 0 ? -1.0 : 1.0;
     const int f = statics_.rows()[bounded_[static_cast<std::size_t>(i)]].friction;
@@ -199,7 +200,8 @@ private:
       }
     rows.middleRows(2 * count, normal_.size()) = -normal_by_;
     constant.segment(2 * count, normal_.size()) = -normal_;
-    // |δq| is bounded by what the contacts can deform: beyond it other contacts may be closed, and these inequalities would not apply.
+    // |δq| is bounded by the deformation that contacts can have. Farther away other contacts may be closed, and these inequalities would
+    // be wrong.
     rows.block(forces, 0, places, free_.cols()) = free_ / kappa_ * (force_scale_ / give_);
     rows.block(forces + places, 0, places, free_.cols()) = -rows.block(forces, 0, places, free_.cols());
     for (Eigen::Index k = 0; k < places; ++k) {
@@ -236,7 +238,7 @@ private:
     return true;
   }
 
-  // Moves the pose by the solution. Returns the largest displacement.
+  // Moves the pose by the solution and projects it onto the joints. Returns the largest displacement of the solution.
   double move() {
     const VecX step = free_ * at_.head(free_.cols()) / kappa_;
     for (int k = 0; k < statics_.coordinates(); ++k) state_.q[k + 3] += scale_[k] * step[k];

@@ -15,18 +15,18 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_steps = 300;
-// Share of the bodies' size: if the given poses are nearer to the joints, one projection suffices; its distance exceeds the least one only
-// in second order.
+// Fraction of the bodies' size. If the given poses are nearer than this to the joints, one projection suffices, because its distance
+// exceeds the least one only in second order.
 constexpr double k_near = 1e-9;
-// Largest distance that can still be removed along the constraints, relative to the whole distance.
+// Largest part of the distance along the constraints, relative to the whole distance, at which the search ends.
 constexpr double k_stationary = 1e-12;
-// Relative change of distances below which rounding decides whether they have decreased.
+// Relative change of distances below which rounding decides whether a distance has decreased.
 constexpr double k_verifiable = 1e-6;
 
-// Finds a pose on the constraints with a stationary distance Σ m Δx² + m Δy² + J Δθ² to the given pose. From the first projection on, steps
-// lead along the constraints towards the given pose, and each is projected. Step lengths follow Barzilai and Borwein (IMA J. Numer. Anal. 8
-// (1988) 141), safeguarded as by Grippo, Lampariello and Lucidi (SIAM J. Numer. Anal. 23 (1986) 707): a distance must be below the largest
-// of the last few.
+// Finds a pose on the constraints with a stationary distance Σ m Δx² + m Δy² + J Δθ² to the given pose. Starting from the first projection,
+// each step goes along the constraints towards the given pose and is projected. Step lengths follow Barzilai and Borwein (IMA J. Numer.
+// Anal. 8 (1988) 141), safeguarded as by Grippo, Lampariello and Lucidi (SIAM J. Numer. Anal. 23 (1986) 707): a distance must be below the
+// largest of the last few.
 class LeastMotion {
 public:
   LeastMotion(Dynamics& dynamics, double t, double tolerance)
@@ -35,7 +35,7 @@ public:
     for (int i = 0; i < n_; ++i) {
       const Cluster& cluster = dynamics.layout().clusters[i / 3];
       const double mass = i % 3 < 2 ? cluster.mass : cluster.inertia;
-      weight_[i] = cluster.w[i % 3] == 0.0 ? 0.0 : mass; // a locked coordinate stays at the value of its drive
+      weight_[i] = cluster.w[i % 3] == 0.0 ? 0.0 : mass; // a coordinate fixed by a drive keeps the value of the drive
     }
   }
 
@@ -53,7 +53,7 @@ public:
       back = way_back(next);
       const std::vector<double> turned = along_constraints(next, back);
       length = next_length(y, next, allowed, turned);
-      // When distances are equal up to rounding, the part of the way along the constraints must decrease instead.
+      // If the distance changes by rounding only, its part along the constraints must decrease instead.
       if (norm2(turned) >= norm2(allowed) && norm2(allowed) < k_verifiable * k_verifiable * last.back()) return;
       y = std::move(next);
       allowed = turned;
@@ -85,7 +85,8 @@ private:
     return sum;
   }
 
-  // Makes a projected step, halved until the distance does not increase. Returns false if no length works.
+  // Takes a step along the constraints and projects it. The step is halved until the distance does not increase. Returns false if no length
+  // succeeds.
   bool step(const std::vector<double>& y, const std::vector<double>& allowed, const std::deque<double>& last, double length,
             std::vector<double>& next) const {
     constexpr int k_max_halvings = 40;
@@ -124,9 +125,9 @@ private:
   const std::vector<double>* given_ = nullptr;
 };
 
-// Returns poses that satisfy the joints, found with equal masses and radii of gyration for all bodies. With a light body between heavy
-// ones, rows are nearly dependent in the mass metric, and the projection is damped and fails far from the joints. With equal masses rows
-// are dependent only where the joints are.
+// Returns poses that satisfy the joints, computed with equal masses and radii of gyration for all bodies. With a light body between heavy
+// ones, rows are nearly dependent in the mass metric, and the projection, which is damped then, fails far from the joints. With equal
+// masses rows are dependent only if the joints are.
 State closed_by_shape(const Model& model, const State& given, double tolerance) {
   Model even = model;
   double square = 0.0; // square of the largest radius of gyration
@@ -148,7 +149,8 @@ State closed_by_shape(const Model& model, const State& given, double tolerance) 
   return state;
 }
 
-// Projects onto the joints. If this fails, the message reports the residual with the masses of the model.
+// Projects y onto the joints; if that fails, with equal masses first. If both fail, the error reports the residual with the masses of the
+// model.
 void close_joints(const Model& model, const State& state, Dynamics& dynamics, std::vector<double>& y) {
   const double tolerance = model.simulation.projection_tolerance;
   try {

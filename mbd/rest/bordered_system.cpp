@@ -94,7 +94,7 @@ void BorderedSystem::find_slots(const Sparse& a, const std::vector<SparseRow>& r
     const int* const column = inner + outer[entry.col()];
     entry_slot_.push_back(static_cast<int>(std::lower_bound(column, inner + outer[entry.col() + 1], entry.row()) - inner));
   }
-  // In an upper triangle stored by columns, the diagonal entry is the last one of a column.
+  // In an upper triangle stored by columns, the diagonal entry is the last one of each column.
   slot_.resize(static_cast<std::size_t>(n_ + m_));
   for (std::size_t i = 0; i < slot_.size(); ++i) slot_[i] = outer[place_[i] + 1] - 1;
   diagonal_.resize(slot_.size());
@@ -152,7 +152,7 @@ bool BorderedSystem::solve(const VecX& f, VecX& x, VecX* y, const VecX* off) con
     for (Eigen::Index r = n_; r < n_ + m_; ++r) residual[place_[r]] -= delta_ * z[place_[r]];
     const double now = residual.cwiseAbs().maxCoeff();
     if (now <= k_refined * size || i == k_most_refinements || (i > 0 && now > 0.5 * before)) {
-      if (!off && !(now <= k_solved * size)) return false; // with given r, dependent rows may contradict each other by rounding
+      if (!off && !(now <= k_solved * size)) return false; // for given r, rounding can make dependent rows contradict each other slightly
       break;
     }
     before = now;

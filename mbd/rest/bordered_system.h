@@ -1,13 +1,14 @@
-// Solver for sparse symmetric equations with constraint rows: response x of a matrix A to forces f, subject to J x = r, with multipliers y.
+// Solver for sparse symmetric equations with constraint rows: the response x of a matrix A to forces f, subject to J x = r, with
+// multipliers y.
 //
 //   [ A + σ D   Jᵀ ] [x]   [f]
 //   [ J         0  ] [y] = [r]
 //
 // The matrix is factorised as L Δ Lᵀ without pivoting, in a sparse order: bodies by least degree, each row after the first body on which it
-// acts, so that no pivot consists of a row alone. To ensure non-zero pivots, ρ JᵀJ is added to A (no effect if J x = r) and the zero of
-// dependent rows is replaced by −δ; iterative refinement removes the effect of δ. By Sylvester's law, the number of negative pivots minus
-// the number of rows is the number of negative directions of A + σ D within J x = 0. The cost of a body is proportional to the number of
-// its joints.
+// acts, so that no pivot consists of a row alone. To ensure non-zero pivots, ρ JᵀJ is added to A (without effect if J x = r), and the zero
+// in dependent rows is replaced by −δ; iterative refinement removes the effect of δ. By Sylvester's law, the number of negative pivots
+// minus the number of rows is the number of directions with J x = 0 in which A + σ D is negative. The cost of a body is proportional to the
+// number of its joints.
 #pragma once
 
 #include "mbd/system/roles.h"
@@ -21,7 +22,8 @@
 
 namespace steplap {
 
-/// Constraint row: coefficients at coordinates of bodies, three for each body, in their order. Initial space for two bodies.
+/// Constraint row: coefficients at the coordinates of bodies, three for each body, in the order of bodies. Initially there is space for two
+/// bodies.
 struct SparseRow {
   int count = 0;
   std::vector<int> at = std::vector<int>(6, 0);
@@ -35,7 +37,7 @@ struct SparseRow {
     at[count] = coordinate;
     j[count++] = value;
   }
-  /// Adds `value` to the coefficient at `coordinate`, which exists already if several parts of the row act on the body.
+  /// Adds `value` to the coefficient at `coordinate`. The coefficient exists already if several parts of the row act on the same body.
   void merge(int coordinate, double value) {
     const auto end = at.begin() + count, known = std::find(at.begin(), end, coordinate);
     if (known == end) add(coordinate, value);
@@ -55,13 +57,14 @@ class BorderedSystem {
 public:
   using Sparse = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
-  /// Sets the matrices. A: largest entries of order 1, both triangles; rows: unit length; D: as its diagonal.
+  /// Sets the matrices. The largest entries of A should be of order 1, and A must have both triangles; rows must have unit length;
+  /// `diagonal` is D.
   void set(const Sparse& a, const std::vector<SparseRow>& rows, const VecX& diagonal);
   /// Factorises the system with A + σ D. Returns false if a pivot vanishes.
   bool factor(double sigma);
-  /// Returns the number of directions within J x = 0 in which A + σ D is negative.
+  /// Returns the number of directions with J x = 0 in which A + σ D is negative, at the last factor().
   [[nodiscard]] int negative() const { return negative_; }
-  /// Solves for x, and for y unless null. `off`: r, zero if null. Returns false if the refinement does not converge.
+  /// Solves for x, and for y unless it is null. `off` is r; null: zero. Returns false if the iterative refinement does not converge.
   bool solve(const VecX& f, VecX& x, VecX* y = nullptr, const VecX* off = nullptr) const;
 
 private:
@@ -70,11 +73,11 @@ private:
   template <class F> void for_entries(const Sparse& a, const std::vector<SparseRow>& rows, const F& f) const;
 
   Eigen::Index n_ = 0, m_ = 0;
-  std::vector<int> place_;       ///< position in the order, of each coordinate and then of each row
+  std::vector<int> place_;       ///< position in the elimination order of each coordinate, then of each row
   Sparse whole_;                 ///< upper triangle of the matrix in that order
   std::vector<double> diagonal_; ///< diagonal at coordinates, without σ D
   std::vector<int> slot_;        ///< index of each diagonal entry in whole_
-  std::vector<int> pattern_;     ///< non-zero pattern of A and rows for which the order was determined
+  std::vector<int> pattern_;     ///< non-zero pattern of A and rows for which the elimination order was determined
   std::vector<int> entry_slot_;  ///< index in whole_ of each entry in turn
   VecX shift_by_;
   double delta_ = 0.0;

@@ -11,15 +11,16 @@ namespace steplap {
 
 namespace {
 
-// Shares of the thickness of a part: largest path between two measurements, and depth from which a pressed contact stops the step.
+// Fractions of the thickness of a part: the path allowed between two measurements (k_look), and the depth at which a closed contact stops
+// the step.
 constexpr double k_look = 0.25, k_half = 0.5;
 constexpr double k_rounded = 1.0 - 1e-6; // factor on a path that was chosen to fit the available space exactly
 constexpr double k_endless = std::numeric_limits<double>::infinity();
 
-// Returns how far the parts may move between two measurements, m.
+// Returns the path that the parts may move between two measurements, m.
 double room_of(const GapBounds& bounds) { return std::max(bounds.gap, k_look * bounds.through); }
 
-// Returns an upper bound of the path of the parts, m.
+// Returns an upper bound of the path of the parts in a displacement, m.
 double way_of(const GapBounds& bounds, const VecX& displacement) {
   const auto of = [&displacement](int body, int k) { return body == k_ground ? 0.0 : displacement[3 * body - 3 + k]; };
   return portable::hypot(of(bounds.a, 0) - of(bounds.b, 0), of(bounds.a, 1) - of(bounds.b, 1)) +

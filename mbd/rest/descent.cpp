@@ -14,25 +14,25 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_no_share = 1e-6; // share of the work; a smaller direct force on a body is rounding
+constexpr double k_no_share = 1e-6; // fraction of the total work: a force on a body that does less is rounding
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-constexpr double k_first_radius = 0.1, k_first_turn = 0.3; // initial trust region: share of the size of the model; rad
-// rad: larger rotations could confuse poses that are half a turn apart
+constexpr double k_first_radius = 0.1, k_first_turn = 0.3; // initial trust region: fraction of the model's size; rad
+// Radii of the trust region for rotations, rad. Larger rotations could confuse poses that differ by half a turn.
 constexpr double k_small_turn = 0.4, k_largest_turn = 1.5;
 constexpr double k_balanced = 1e-11; // share of the size of the model; smaller Newton steps are rounding of the pose
 constexpr double k_nearly_balanced = 1e-8;
 constexpr double k_nudge = 1e-3; // displacement out of an unstable equilibrium: share of the size of the model, rad
-// Share of the work along the tangent at the start; a step with more opposing work at its end has gone too far.
+// A step is too long if the forces at its end oppose it by more than this fraction of their drive at its start.
 constexpr double k_turned_against = 0.5;
 constexpr double k_far = 1e4; // in sizes of the model; beyond it a body counts as moving without end
 constexpr double k_many_turns = 40.0 * std::numbers::pi;
 constexpr int k_most_measurements = 1000; // gap measurements along one step
 constexpr int k_most_halved_measurements = 40;
-constexpr double k_touch = 64.0; // roundings of the largest coordinate by which a landing body penetrates
+constexpr double k_touch = 64.0; // depth to which a landing body penetrates, in rounding errors of the largest coordinate
 constexpr int k_most_trials = 44, k_most_corrections = 4, k_most_projections = 25, k_most_polishing = 4;
-constexpr int k_most_dense = 90; // coordinates; with more, sparse algebra is faster
+constexpr int k_most_dense = 90; // number of coordinates above which sparse algebra is faster
 
-// Limits for a sparse projection: a step that converges slowly is too long, and half the step is cheaper than more iterations.
+// Limits for a sparse projection. If it converges slowly, the step is too long, and halving the step is cheaper than more iterations.
 constexpr int k_most_sparse_projections = 12;
 constexpr double k_slow = 0.5;
 
@@ -82,7 +82,7 @@ double Descent::step_size(const VecX& step) const {
   return size;
 }
 
-// Projects the pose onto the rows, the shortest way. Returns false if it is too far.
+// Projects the pose onto the rows by the least displacement. Returns false if this fails or needs more than the size of the model.
 bool Descent::project() {
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0;; ++i) {
@@ -93,7 +93,7 @@ bool Descent::project() {
     if (statics_.rows().empty()) return true;
     const double close = 8.0 * k_epsilon * reach_;
     if (!std::isfinite(size) || size > length_) return false;
-    // Dependent rows are satisfied together with the others or not at all, so check them at the end.
+    // Dependent rows are not part of the solution. They are satisfied together with the others or not at all, which is checked at the end.
     if (size <= close || (size >= 0.5 * before && size <= 64.0 * close)) {
       for (int r = 0; r < statics_.bilateral_count(); ++r)
         if (!(std::abs(off[r]) <= 1e-7 * length_ * std::max(1.0, landscape_->row_size()[r]))) return false;
@@ -111,11 +111,11 @@ bool Descent::move_to(const std::vector<double>& from, const VecX& step) {
   return project();
 }
 
-// Returns the slope of the potential along the step's tangent at its end; negative if the forces still do work in its direction.
+// Returns the derivative of the potential along the step at its end; negative if the forces still drive the step.
 double Descent::slope_along(const VecX& step) const { return -landscape_->along_rows(step).dot(scale_.cwiseProduct(statics_.force())); }
 
-// A straight step may leave the curved path of a stiff contact or spring. Corrects the stiff directions, if that brings the step closer to
-// balance. Returns the slope there.
+// Corrects a straight step, which may leave the curved path of a stiff contact or spring, along the stiff directions. The correction is
+// kept only if it brings the pose closer to balance. Returns slope_along() at the resulting pose; `slope` is that before.
 double Descent::correct(const VecX& step, const std::vector<double>& from, double slope) {
   const std::vector<double> first = state_.q;
   VecX moved = step;
@@ -145,7 +145,7 @@ double Descent::correct(const VecX& step, const std::vector<double>& from, doubl
 }
 
 // Returns the number of gap measurements along a step: one per quarter of a body's size and per tenth of a radian, because contacts may
-// close and open in between.
+// close and open again in between.
 int Descent::measurement_count(const VecX& step) const {
   double parts = 0.0;
   for (int k = 0; k < n_; ++k) {
@@ -155,7 +155,8 @@ int Descent::measurement_count(const VecX& step) const {
   return static_cast<int>(std::clamp(std::ceil(parts), 1.0, 1.0 * k_most_measurements));
 }
 
-// In a large model: cuts the step of each body at its first contact, so that many bodies land in one step. Returns false if none lands.
+// Only for large models: shortens the step of each body to its first contact, so that many bodies land in one step. Returns false if none
+// lands.
 bool Descent::land(const std::vector<double>& from, VecX& step) {
   if (!is_sparse_ || system_.contact_count == 0) return false;
   std::vector<double> measurements(system_.bodies.size(), 0.0);
@@ -183,8 +184,8 @@ VecX Descent::way_from(const std::vector<double>& from) const {
   return way;
 }
 
-// Moves to `share` of a step, projected onto the rows. Reduces `share` until no contact can have closed and opened again since the share
-// `before`, at which gaps were measured last.
+// Moves to the fraction `share` of a step, projected onto the rows, and measures the gaps. `share` is reduced until no contact can have
+// closed and opened again since the fraction `before`, at which gaps were measured last.
 void Descent::refine_first_contact(const std::vector<double>& from, const VecX& step, double before, double& share) {
   const std::vector<double> last = state_.q;
   const bool is_on_rows = !is_sparse_ && !statics_.rows().empty();
@@ -197,7 +198,7 @@ void Descent::refine_first_contact(const std::vector<double>& from, const VecX& 
   }
 }
 
-// Returns the share of a step at which a contact first closes; 1 if none does.
+// Returns the fraction of a step at which a contact first closes; 1 if none closes.
 double Descent::first_contact(const std::vector<double>& from, const VecX& step) {
   if (clearance_->is_endless()) return 1.0;
   const double spacing = 1.0 / measurement_count(step);
@@ -222,8 +223,8 @@ bool Descent::loads_friction() const {
   return false;
 }
 
-// Returns the share of a step at which the first friction element gains its load. Friction holds a contact at the pose of first touch, not
-// at the depth that the step reached.
+// Returns the fraction of a step, between `low` and `high`, at which the first friction element gains normal force, and moves there.
+// Friction must hold a contact at the pose of first touch, not at the depth that the step reached.
 double Descent::first_load(const std::vector<double>& from, const VecX& step, double low, double high) {
   if (!loads_friction()) return high;
   const std::vector<double> reached = state_.q;
@@ -243,7 +244,8 @@ double Descent::first_load(const std::vector<double>& from, const VecX& step, do
   return taken;
 }
 
-// Adapts the trust region after a step that was taken at `factor` of its planned length.
+// Adapts the trust region after a step that was shortened to the fraction `factor`. `is_straight`: the forces changed little along the
+// step.
 void Descent::adapt_region(double factor, const VecX& step, bool is_straight) {
   double moved = 0.0, turned = 0.0;
   for (int k = 0; k < n_; ++k) {
@@ -279,14 +281,14 @@ bool Descent::advance(VecX step) {
     bool is_too_far = !move_to(from, factor * step);
     if (!is_too_far) {
       slope = slope_along(step);
-      // Landed bodies stay where they touch, because friction will hold them there.
+      // Bodies that have landed are not moved on: friction will hold them where they touch.
       if (!has_landed && (slope > -k_turned_against * start || state_.mode != modes)) slope = correct(factor * step, from, slope);
       is_too_far = !(slope <= -k_turned_against * start);
       is_taken = !is_too_far && (factor == whole || slope >= k_turned_against * start);
     }
     if (is_taken) break;
     (is_too_far ? high : low) = factor;
-    // In a large model the step is accepted here: finding its best length would cost as much as many steps.
+    // In a large model the step is accepted here, since finding its best length would cost as much as many steps.
     if (is_sparse_ && low > 0.0 && slope < 0.0 && high < whole) break;
     if (trial > 12 && low > 0.0 && high - low < 1e-3 * high) break;
     factor = 0.5 * (low + high);
@@ -306,7 +308,8 @@ bool Descent::advance(VecX step) {
   return true;
 }
 
-// Updates friction: an element that gains its load, or whose motion reverses, sticks at the present pose; an unloaded one is released.
+// Updates friction after a step from the poses `from`. An element that gains normal force, or whose slip reverses, sticks at the present
+// pose; one without normal force is released.
 void Descent::follow_friction(const std::vector<double>& from) {
   statics_.evaluate(state_);
   bool is_changed = false, is_moved = false;
@@ -344,9 +347,9 @@ void Descent::follow_friction(const std::vector<double>& from) {
   statics_.collect_rows(state_, left_out_);
 }
 
-// Finds dependent friction rows, as the equations of motion do at the start of sticking, and leaves them out. Several feet of one body hold
-// it in one direction only once. With all rows, they would also hold it against tilting, because tilting changes the distance of two feet
-// on the ground slightly.
+// Finds friction rows that depend on others, by the rule of the equations of motion, and leaves them out. Several feet of one body hold it
+// in a direction only once. If all rows were kept, they would also hold the body against tilting, which changes the distance of two feet
+// slightly.
 void Descent::find_dependent_friction() {
   left_out_.assign(static_cast<std::size_t>(system_.friction_row_count) + 1, 0);
   const auto is_bounded = [this](std::size_t f) {
@@ -377,8 +380,8 @@ bool Descent::has_run_away() {
   runaway_ = largest_part(moved);
   const int driven = 3 * runaway_.body - 3 + runaway_.coordinate;
   driving_force_ = std::abs(statics_.force()[driven]);
-  // If almost no force acts on the moving body itself, another body that moves with it drives it (a pinion turned on its rack by its own
-  // weight). The driving force is then the total work divided by its displacement.
+  // If almost no force acts on this coordinate itself, other coordinates that move with it drive it: the rotation of a pinion that rolls
+  // down its rack by its weight. The driving force is then the total work divided by the displacement.
   double work = 0.0;
   for (int k = 0; k < n_; ++k) work += statics_.force()[k] * (state_.q[k + 3] - start_[k + 3]);
   const double way = std::abs(state_.q[driven + 3] - start_[driven + 3]);
@@ -386,7 +389,7 @@ bool Descent::has_run_away() {
   return true;
 }
 
-// Newton steps until rounding stops the improvement.
+// Improves the balance by Newton steps until rounding errors prevent it. Returns true if it improved.
 bool Descent::polish() {
   bool is_better = false;
   for (int i = 0; i < k_most_polishing; ++i) {
@@ -436,7 +439,7 @@ void Descent::finish() {
   yielding_ = landscape_->count_yielding();
   residual_ = landscape_->acceleration().cwiseProduct(scale_).cwiseAbs().maxCoeff();
   indifferent_ = landscape_->indifferent(more_indifferent_);
-  // Rows left out are anchored at the present pose.
+  // Friction rows that were left out get their anchors at the present pose.
   for (std::size_t f = 0; f < system_.frictions.size(); ++f)
     if (const int row = system_.frictions[f].row; state_.friction[f].phase == FrictionPhase::stick && left_out_[row] != 0)
       anchor_friction(system_, state_, static_cast<int>(f), statics_.motion().data());

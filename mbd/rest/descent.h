@@ -1,14 +1,15 @@
-// Descent to static equilibrium: bodies move along the constraints in the direction of the forces until these balance.
+// Descent to static equilibrium: bodies are moved along the constraints, downhill in potential energy, until forces balance.
 //
 // Newton's method for Q + Jᵀλ = 0 on the constraint manifold. Let wᵢ be the motions that the rows allow, orthonormal in the mass metric.
 // For conservative forces the stiffness along them is symmetric; its eigenvalues λᵢ (1/s²) and the components gᵢ of the force give the step
-// Σ wᵢ gᵢ/(λᵢ + σ) (landscape.h; large models avoid computing all λᵢ). The shift σ keeps the step within a trust region and downhill if λᵢ
-// ≤ 0. For large σ the step follows the accelerations, like a strongly damped machine. A step is projected onto the rows. It is accepted
-// unless the forces at its end oppose it by more than half of what they push at its start. Otherwise, or if projection or a contact stops
-// it, it is halved. No gap may close unnoticed on the way (clearance.h), so that no thin plank is passed through.
+// Σ wᵢ gᵢ/(λᵢ + σ) (landscape.h; in large models the λᵢ are not computed). The shift σ keeps the step within a trust region, and downhill
+// if some λᵢ ≤ 0. For large σ the step follows the accelerations, as in a strongly damped machine. A step is projected onto the rows. It is
+// accepted unless the forces at its end oppose it by more than half of their drive at its start. It is halved if it is not accepted, if the
+// projection fails, or if a contact stops it. No gap may close unnoticed along the step (clearance.h), so that bodies do not pass through
+// thin planks.
 //
-// There are no absolute tolerances. Lengths are relative to the size of the model (its extent; for an angle, the radius at which a body's
-// rows and mass lie), forces to the rounding of poses, stiffness and reactions.
+// All tolerances are relative: those of lengths to the size of the model (its extent; for an angle, the radius at which rows and mass of
+// the body lie), those of forces to the rounding errors of poses, stiffness and reactions.
 #pragma once
 
 #include "mbd/rest/clearance.h"
@@ -17,35 +18,35 @@
 namespace steplap {
 
 enum class DescentEnd {
-  rest,      ///< forces balance, and the equilibrium is stable
+  rest,      ///< forces balance in a stable equilibrium
   runs_away, ///< a body moves without end
   no_way     ///< forces do not balance, but no step makes progress
 };
 
 class Descent {
 public:
-  /// Moves `state`: its poses, modes and friction phases. A friction element that gains its load sticks at that pose, one that loses it is
-  /// released, and one that slips continues until its motion reverses.
+  /// Changes poses, modes and friction phases of `state`. A friction element that gains normal force sticks at that pose, one that loses it
+  /// is released, and one that slips continues until its motion reverses.
   Descent(const System& system, State& state, RestAlgebra algebra = RestAlgebra::by_size);
 
   DescentEnd run();
 
   [[nodiscard]] int iterations() const { return iterations_; }
   [[nodiscard]] double length() const { return length_; } ///< size of the model, m
-  /// Returns the displacement per scaled coordinate: 1 for lengths, 1/radius for angles, with the radius at which the body's rows and mass
-  /// lie.
+  /// Returns the displacement per scaled coordinate: 1 for lengths; for angles the reciprocal of the radius at which rows and mass of the
+  /// body lie.
   [[nodiscard]] const VecX& scale() const { return scale_; }
   /// Returns the largest remaining acceleration, m/s² or rad/s².
   [[nodiscard]] double residual() const { return residual_; }
-  /// Returns the multipliers of statics().rows(). Those of dependent rows are one choice of many.
+  /// Returns the multipliers of statics().rows(). Those of dependent rows are not unique; one solution is returned.
   [[nodiscard]] const VecX& multipliers() const { return landscape_->multipliers(); }
   [[nodiscard]] const Statics& statics() const { return statics_; }
-  /// Returns directions without resistance at the equilibrium, each by its largest component.
+  /// Returns the directions without stiffness at the equilibrium, each described by its largest component.
   [[nodiscard]] const std::vector<MotionPart>& indifferent() const { return indifferent_; }
   [[nodiscard]] int more_indifferent() const { return more_indifferent_; } ///< number of further such directions
-  /// Returns unstable equilibria on the way that were left.
+  /// Returns the unstable equilibria that were found and left on the way, each by the direction in which it was left.
   [[nodiscard]] const std::vector<MotionPart>& left() const { return left_; }
-  /// Return the number of directions without resistance to a small motion, at the start and at the end.
+  /// Return the number of directions along which small displacements meet no resistance, at the start and at the end.
   [[nodiscard]] int yielding_at_start() const { return yielding_at_start_; }
   [[nodiscard]] int yielding() const { return yielding_; }
   /// Return the body that moves without end, and the force or torque that drives it.
@@ -91,7 +92,7 @@ private:
   std::vector<double> start_;
   double residual_ = 0.0;
   std::vector<Hold> hold_;     ///< per friction element
-  std::vector<char> left_out_; ///< per friction row: dependent on other sticking rows and left out
+  std::vector<char> left_out_; ///< for each friction row: left out, since it depends on other sticking rows
   std::vector<MotionPart> indifferent_, left_;
   MotionPart runaway_;
   double driving_force_ = 0.0;

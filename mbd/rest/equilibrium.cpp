@@ -21,17 +21,18 @@ namespace {
 
 constexpr double k_admissible = 1.0 + 1e-9; // largest utilisation; the excess is rounding at stiff contacts
 constexpr double k_least_used = 1e-9;       // smaller utilisations are rounding
-constexpr double k_flowed = 1e-12;          // share of the size of the model; smaller slides of elastic joints are rounding
+constexpr double k_flowed = 1e-12;          // fraction of the model's size; smaller slides of elastic joints are rounding
 constexpr int k_most_flows = 200;
-// Factor on the rounding of a rope's tension; accelerations at an equilibrium are known to about 1e-9 m/s².
+// A taut rope counts as pushing only beyond this multiple of its tension's rounding error, since accelerations at an equilibrium are known
+// to about 1e-9 m/s² only.
 constexpr double k_pushes = 1e3;
 constexpr double k_on_rows = 1e-12;            // m, rad
 constexpr std::size_t k_most_rope_changes = 8; // per rope
 constexpr double k_short = 0.999;
 constexpr int k_most_slips = 12;   // of one friction element before the search fails
 constexpr double k_tipped = 0.75;  // rad of rotation from which a body counts as tipped over
-constexpr int k_most_shared = 150; // coordinates of the largest model for which all distributions of friction are examined
-// Share of the size of the model: contacts that slid further, resisted by friction alone, did not stand.
+constexpr int k_most_shared = 150; // coordinates of the largest model for which all admissible friction forces are searched
+// Fraction of the model's size. If contacts slid further, held by friction alone, the machine did not stand.
 constexpr double k_stands = 1e-2;
 
 std::string rounded(double value) {
@@ -40,18 +41,18 @@ std::string rounded(double value) {
   return text;
 }
 
-// Friction element that slid during the search.
+// A friction element that slid during the search.
 struct Slip {
   int friction = 0;
-  double used = 0.0; ///< utilisation when it first slid
-  double from = 0.0; ///< value of its row at that time
+  double used = 0.0; ///< utilisation just before it first slid
+  double from = 0.0; ///< value of its row at that time, m or rad
   int times = 0;
-  bool is_least = false;  ///< `used` is the least over all distributions of the load
+  bool is_least = false;  ///< `used` is the least value over all admissible friction forces
   bool is_new = true;     ///< slides since the last descent
-  bool gives_way = false; ///< only its friction resisted the motion
+  bool gives_way = false; ///< while it slid, nothing else resisted the motion
 };
 
-// Failure: friction between touching bodies gave way.
+// Failure of the search because friction between touching bodies gave way.
 class SlidAway : public ElementFailure {
 public:
   SlidAway(const std::string& message, std::vector<std::string> names, const Slip& slip)
@@ -92,7 +93,7 @@ public:
   }
 
 private:
-  // Repeats the search from the final pose of the damped machine. `none`: failure of the first search.
+  // Releases the machine with strong damping and repeats the search from its final pose. `none`: failure of the first search.
   Equilibrium settled(const ElementFailure& none) {
     state_ = start_;
     std::fill(state_.v.begin(), state_.v.end(), 0.0);
@@ -107,7 +108,7 @@ private:
     State rest = *settling.rest;
     rest.bases = held_bases(rest);
     state_ = rest;
-    // A body that slid away did not stand, whatever its final pose.
+    // A body that slid away did not stand, even if it came to rest somewhere.
     if (const auto* const slid = dynamic_cast<const SlidAway*>(&none);
         slid && std::abs(row_value(slid->friction()) - slid->from()) > k_stands * length_)
       throw ElementFailure(none.what(), none.elements());
@@ -122,7 +123,7 @@ private:
       throw ElementFailure(tried, none.elements());
     }
   }
-  // Returns the bases of rows with the drives' original values and the friction anchors of `rest`.
+  // Returns the bases of all rows: those of drives unchanged, friction anchors as in `rest`.
   [[nodiscard]] std::vector<RowBase> held_bases(const State& rest) const {
     std::vector<RowBase> bases = rest.bases;
     for (const RowSpec& row : system_.rows)
@@ -150,7 +151,7 @@ private:
       find_margins(descent);
       if (change_ropes()) continue;
       if (overloads_.empty()) break;
-      if (result_.is_settled || !share_anew(descent)) let_go(); // a settled machine has distributed its load on the way
+      if (result_.is_settled || !share_anew(descent)) let_go(); // after settling the load is distributed already
     }
     check_slides();
     return at_rest();
@@ -173,7 +174,7 @@ private:
     return std::move(result_);
   }
 
-  // Lets elastic joints beyond their bound slide back onto it, which changes the equilibrium. Returns true if one did.
+  // Lets elastic joints that exceed their bound slide until they are on the bound, which changes the equilibrium. Returns true if one slid.
   bool let_flow() {
     if (system_.inner_groups.empty()) return false;
     Statics statics(system_);
@@ -188,8 +189,8 @@ private:
       if (i < last_flow_.size()) along += flow[i] * last_flow_[i], square += last_flow_[i] * last_flow_[i];
     }
     if (most <= k_flowed * length_) return false;
-    // A joint that yields gets back a part of its load, depending on the stiffness parallel to it. So successive slides form a geometric
-    // series; its sum is extrapolated at every second slide, slightly too short on purpose.
+    // A joint that slides gets back a part of its load, depending on the stiffness parallel to it. Successive slides therefore form a
+    // geometric series. Its sum is extrapolated at every second slide, with a factor slightly below 1 so as not to slide too far.
     const double ratio = square > 0.0 ? along / square : 0.0;
     const double rest = ratio > 0.0 && ratio < 1.0 ? k_short * ratio / (1.0 - ratio) : 0.0;
     if (++flows_ > k_most_flows || ratio >= 1.0 || rest * most > length_)
@@ -200,7 +201,7 @@ private:
     return true;
   }
 
-  // Returns the state with zero rates of drives and unchanged values, so that the equations of motion see a machine at rest.
+  // Returns the state with all drives at their present values and zero rates, so that the equations of motion describe a machine at rest.
   [[nodiscard]] State with_drives_held() const {
     State held = state_;
     for (const RowSpec& row : system_.rows) {
@@ -252,8 +253,8 @@ private:
     }
   }
 
-  // Changes the state of one rope: a taut rope that would push becomes slack, a slack one beyond its length becomes taut. Returns true if
-  // one changed.
+  // Changes the phase of one rope: a taut rope that would have to push becomes slack, a slack rope that is too long becomes taut. Returns
+  // true if a rope changed.
   bool change_ropes() {
     const auto worst =
         std::max_element(pushing_.begin(), pushing_.end(), [](const Overload& a, const Overload& b) { return a.wrench[0] < b.wrench[0]; });
@@ -269,7 +270,7 @@ private:
       state_.friction[f].phase = FrictionPhase::stick;
       try {
         put_on_rows();
-      } catch (const ConstraintFailure&) { // an element that slid now sticks elsewhere and conflicts with the rope: release it
+      } catch (const ConstraintFailure&) { // an element that slid sticks elsewhere now and conflicts with the rope, so it is released
         free_contacts();
         put_on_rows();
       }
@@ -282,8 +283,8 @@ private:
     throw ElementFailure("no static equilibrium found: whether '" + name_of(f) + "' and other ropes are taut at rest cannot be decided",
                          {name_of(f)});
   }
-  // A body without end may be held by ropes that were slack at the start. Sets those taut that it has stretched, and returns to the start.
-  // Returns true if the search must be repeated.
+  // Called for a body that moves without end. Ropes that were slack at the start may hold it: those that it has stretched are set taut, at
+  // the poses of the start. Returns true if the search must be repeated.
   bool tighten_long() {
     std::vector<Motion<double>> motion;
     place_bodies(state_.q, state_.v, motion);
@@ -298,13 +299,13 @@ private:
     state_.q = start_.q;
     try {
       put_on_rows();
-    } catch (const ConstraintFailure&) { // they cannot all be taut
+    } catch (const ConstraintFailure&) { // not all of them can be taut
       state_.q = ran_to;
       return false;
     }
     return count_rope(changed);
   }
-  // Releases sticking friction of contacts, which then gains its load again.
+  // Releases sticking friction of contacts. In the next descent it sticks again where it gains normal force.
   void free_contacts() {
     for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f)
       if (state_.friction[f].phase == FrictionPhase::stick && !system_.frictions[f].rope && is_of_contacts(f))
@@ -328,8 +329,8 @@ private:
     return used < k_least_used ? 0.0 : used;
   }
 
-  // Returns true if the bound of the friction comes from contacts, that is, if it has no load with all contacts open. Friction of three
-  // dimensions belongs to joints.
+  // Returns true if the bound of the friction element comes from contacts, that is, if it carries no load with all contacts open. Elements
+  // with three dimensions belong to joints.
   [[nodiscard]] bool is_of_contacts(int f) const {
     const FrictionElement& friction = *system_.frictions[f].friction;
     if (friction.dimension() > 1) return false;
@@ -347,11 +348,11 @@ private:
     return evaluate_row<false>(*system_.frictions[f].friction->rows(state_.friction[f]), motion.data()).value;
   }
 
-  // Sticking forces depend on the history of loading. Looks for another admissible distribution of forces that holds the machine, and
-  // returns true if there is one.
+  // Sticking forces are not determined by statics, since they depend on the history of loading. Searches for other admissible friction
+  // forces that hold the machine, and returns true if there are any.
   bool share_anew(const Descent& descent) {
     if (was_shared_anew_ || history_ == LoadHistory::ramped) return false;
-    // The search over all distributions uses dense algebra, which takes hours in large models. There friction slides until it sticks.
+    // This search uses dense algebra, which takes hours in large models. In these, overloaded friction slides until it sticks.
     if (3 * (system_.body_count() - 1) > k_most_shared) {
       is_too_large_ = true;
       return false;
@@ -366,7 +367,7 @@ private:
     return true;
   }
 
-  // Lets the most overloaded elements slide, with those that share their load.
+  // Lets the most overloaded friction elements slide, and those that share the load with them.
   void let_go() {
     const auto worst =
         std::max_element(overloads_.begin(), overloads_.end(), [](const Overload& a, const Overload& b) { return a.used < b.used; });
@@ -416,7 +417,7 @@ private:
   [[noreturn]] void fail(const Descent& descent, DescentEnd end) const {
     const MotionPart& part = descent.runaway();
     const std::string unit = part.coordinate == 2 ? " N m" : " N";
-    // An unstable equilibrium exists; the message says that there is no stable one.
+    // If an unstable equilibrium was found, the message says that there is no stable one.
     std::string text = "no static equilibrium: ";
     if (!result_.left.empty()) text = "no stable equilibrium: " + unstable_text(system_, result_.left.front()) + "; downhill from there ";
     if (!slips_.empty()) text += overload_text(slips_.front()) + "; ";
@@ -433,7 +434,7 @@ private:
     throw ElementFailure(text, std::move(names));
   }
 
-  // Marks the bodies that joints connect to the ground.
+  // Returns for each body whether joints connect it to the ground.
   [[nodiscard]] std::vector<char> led_bodies() const {
     std::vector<std::vector<int>> joined(system_.bodies.size());
     for (const RowSpec& row : system_.rows) {
@@ -452,7 +453,7 @@ private:
     return is_led;
   }
 
-  // Records a body without joints to the ground that tipped over.
+  // Records the body without joints to the ground that turned furthest, if it tipped over.
   void note_tipping() {
     if (system_.contact_count == 0) return;
     const std::vector<char> is_led = led_bodies();
@@ -483,17 +484,17 @@ private:
   const RestAlgebra algebra_;
   const LoadHistory history_;
   int flows_ = 0;                 ///< slides of elastic joints in this search
-  std::vector<double> last_flow_; ///< per inner state
+  std::vector<double> last_flow_; ///< slide of each inner state at the last call of let_flow()
   const State& start_;
   State state_;
   double length_ = 0.0;
   int yielding_ = 0;         ///< directions without resistance at the last equilibrium
-  double least_usage_ = 0.0; ///< least utilisation of friction over all distributions, if determined
+  double least_usage_ = 0.0; ///< least utilisation over all admissible friction forces, if it was searched
   bool was_shared_anew_ = false;
-  bool is_too_large_ = false; ///< too large for a search over all distributions
+  bool is_too_large_ = false; ///< the model is too large for that search
   std::vector<Slip> slips_;
   std::vector<Overload> overloads_;
-  std::vector<Overload> pushing_; ///< taut ropes that would have to push
+  std::vector<Overload> pushing_; ///< taut ropes that would have to push, with their wrenches
   std::size_t rope_changes_ = 0;
   Equilibrium result_;
 };

@@ -1,5 +1,5 @@
-// Error for poses in which a force has no direction, because the two ends of a rope, rod or spring coincide. Forces are then not-a-number,
-// and matrix decompositions may not terminate.
+// Error for poses in which a force has no direction, because the two ends of a rope, rod or spring coincide. The forces are then not
+// numbers, and matrix decompositions may not terminate.
 #pragma once
 
 #include "mbd/rest/statics.h"
@@ -10,9 +10,9 @@
 
 namespace steplap {
 
-/// Returns the failure that names the body on which a force or its derivative is not a number.
+/// Returns the error; its message names the body on which a force, or a derivative of one, is not a number.
 [[nodiscard]] inline ElementFailure no_direction(const System& system, const Statics& statics) {
-  // The forces that this body exerts on others are not numbers either, so look for its own diagonal entry.
+  // The body's forces on other bodies are not numbers either, so its own diagonal entry is checked.
   const MatX stiffness = statics.stiffness(VecX::Zero(static_cast<Eigen::Index>(statics.rows().size())));
   Eigen::Index worst = 0;
   while (worst + 1 < stiffness.rows() && std::isfinite(statics.force()[worst]) && std::isfinite(stiffness(worst, worst))) ++worst;

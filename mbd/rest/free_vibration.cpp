@@ -32,14 +32,14 @@ std::pair<VecX, MatX> singular_vectors(const MatX& a) {
   return {values, v};
 }
 
-// Returns an orthonormal basis of the complement of the columns' span.
+// Returns an orthonormal basis of the vectors orthogonal to the columns.
 MatX complement(const MatX& columns) {
   const Eigen::Index n = columns.rows();
   if (columns.cols() == 0) return MatX::Identity(n, n);
   return orthonormal(columns, n).rightCols(n - columns.cols());
 }
 
-// Returns motions at constant velocity without damping: (β, η') with Vᵀη' = 0 and A V β + B η' = 0.
+// Returns the motions at constant velocity that nothing damps, as columns (β, η'): Vᵀη' = 0 and A V β + B η' = 0, where V is v.held.
 MatX steady_motions(const FreeVibration& v) {
   const Eigen::Index r = v.a.cols(), k = v.held.cols();
   if (v.loose.cols() == 0) return MatX(k + r, 0);
@@ -64,8 +64,8 @@ MatX steady_motions(const FreeVibration& v) {
   return motions;
 }
 
-// Balances m by D⁻¹ m D with powers of two, so that rows and columns have similar size (B. N. Parlett, C. Reinsch, Numer. Math. 13 (1969)
-// 293) and slow modes stay accurate next to fast ones. Returns D.
+// Balances m: replaces it by D⁻¹ m D, with D of powers of two, such that rows and columns have similar size (B. N. Parlett, C. Reinsch,
+// Numer. Math. 13 (1969) 293). This keeps slow modes accurate next to fast ones. Returns D.
 VecX balance(MatX& m) {
   const Eigen::Index n = m.rows();
   VecX d = VecX::Ones(n);
@@ -88,8 +88,8 @@ VecX balance(MatX& m) {
   return d;
 }
 
-// Refines an eigenvalue by Newton's method for (λ² − λ B − A) x = 0, that is, inverse iteration with a moving shift. The remaining rounding
-// is that of the mode's own terms.
+// Refines an eigenvalue by Newton's method for (λ² − λ B − A) x = 0, that is, inverse iteration with a moving shift. The remaining error is
+// the rounding of the mode's own terms.
 void refine(const FreeVibration& v, Complex& value, ComplexVector& x) {
   const Eigen::Index r = v.a.cols();
   Complex at = value;
@@ -108,7 +108,7 @@ void refine(const FreeVibration& v, Complex& value, ComplexVector& x) {
     }
     const ComplexVector next = solve_complex(q, right);
     const Complex ratio = shape.dot(next);
-    if (!next.allFinite() || size_of(ratio) == 0.0) break; // the shift is an eigenvalue
+    if (!next.allFinite() || size_of(ratio) == 0.0) break; // `value` is an eigenvalue to the last digit
     const Complex change = Complex(shape.squaredNorm()) / ratio;
     const double moved = size_of(change) / size_of(at);
     if (!(moved < last)) break;
@@ -124,8 +124,8 @@ void refine(const FreeVibration& v, Complex& value, ComplexVector& x) {
 } // namespace
 
 void FreeVibration::part_loose(const std::function<MatX(const MatX&)>& sizes_of) {
-  // Motions without stiffness: singular vectors of A whose singular value is rounding of the stiffness. Each is compared with its own
-  // rounding, not with that of the stiffest motion.
+  // Motions without stiffness are the singular vectors of A whose singular value is a rounding error of the stiffness. Each value is
+  // compared with the rounding of its own terms, not with that of the stiffest motion.
   const auto [sizes, vectors] = singular_vectors(a);
   const MatX shapes = basis * vectors;
   const MatX size = sizes_of(shapes);
@@ -147,8 +147,8 @@ void FreeVibration::part_loose(const std::function<MatX(const MatX&)>& sizes_of)
 std::vector<FreeMode> modes_of(const FreeVibration& v) {
   std::vector<FreeMode> found;
   const Eigen::Index r = v.a.cols(), k = v.held.cols();
-  // State (β, η') without positions along motions that have no stiffness and without velocities that nothing resists, so that no eigenvalue
-  // is zero.
+  // State (β, η'): positions along motions with stiffness, and velocities. Velocities that nothing resists are removed, so that no
+  // eigenvalue is zero.
   MatX whole = MatX::Zero(k + r, k + r);
   whole.topRightCorner(k, r) = v.held.transpose();
   whole.bottomLeftCorner(r, k) = v.a * v.held;

@@ -1,8 +1,9 @@
-// Small vibrations in a few coordinates without constraints: a dense eigenvalue problem.
+// Small vibrations in a few coordinates η without constraints: a dense eigenvalue problem.
 //
 //   η'' = A η + B η',   δq = basis η,   basisᵀ M basis = 1
-// Motions without stiffness (A η = 0) are separated first, with the rounding of their own terms. The state matrix of the rest is balanced,
-// and each eigenvalue is refined on (λ² − λ B − A) x = 0. So slow modes stay accurate next to fast or strongly damped ones.
+// Motions without stiffness (A η = 0) are separated first, with the rounding error of their own terms as tolerance. The state matrix of the
+// others is balanced, and each eigenvalue is refined on (λ² − λ B − A) x = 0. Slow modes are therefore accurate next to fast or strongly
+// damped ones.
 #pragma once
 
 #include "mbd/base/types.h"
@@ -15,10 +16,11 @@ namespace steplap {
 
 struct FreeVibration {
   MatX a, b, basis;
-  MatX held;  ///< orthonormal basis of motions with stiffness
-  MatX loose; ///< orthonormal basis of motions without: null vectors of A
+  MatX held;  ///< orthonormal basis of motions with stiffness, as columns
+  MatX loose; ///< orthonormal basis of motions without stiffness: null vectors of A
 
-  /// Determines `held` and `loose`. `sizes_of` returns |K| |x| for each column x of displacements of the whole model, with K its stiffness.
+  /// Determines `held` and `loose`. For columns x of displacements of the whole model, sizes_of returns |K| |x|, with K the stiffness of
+  /// the model.
   void part_loose(const std::function<MatX(const MatX&)>& sizes_of);
 };
 

@@ -12,7 +12,7 @@ namespace steplap {
 
 namespace {
 
-// Least coefficient, for rows of unit length, with which a row takes part in a dependency; rounding is smaller.
+// Least coefficient, for rows of unit length, with which a row counts as part of a dependency; smaller ones are rounding.
 constexpr double k_part = 1e-6;
 
 class Rows {
@@ -66,8 +66,8 @@ public:
     return list;
   }
 
-  // Returns the rows with a coefficient in some dependency J_dᵀ = Σ c J_rᵀ. All dependencies are added up with random factors and solved
-  // together. Terms that cancel in one such sum do not cancel in a second one.
+  // Marks the rows that have a coefficient in some dependency J_dᵀ = Σ c J_rᵀ. All dependencies are added with random factors and solved at
+  // once. A second sum with other factors finds terms that cancel in the first one.
   [[nodiscard]] std::vector<char> find_shared(const std::vector<int>& dependent) const {
     std::vector<char> is_shared(rows_.size(), 0);
     for (const int d : dependent) is_shared[d] = 1;
@@ -94,7 +94,7 @@ private:
       for (int c = 0; c < 3; ++c) sum += rows_[r].wj[side][c] * rows_[r].j[side][c];
     auto part = std::lower_bound(parts_.begin(), parts_.end(), r, [](const SchurPart& p, int row) { return p.of < row; });
     if (part == parts_.end() || part->of != r) return std::sqrt(sum);
-    std::map<int, double> wj, j; // a body on which several parts act gets their sum
+    std::map<int, double> wj, j; // by coordinate; if several parts of a row act on a body, their sum
     const auto add = [&](const SchurRow& row) {
       for (int side = 0; side < 2; ++side)
         for (int c = 0; c < 3 && row.body[side] >= 0; ++c) {
@@ -132,7 +132,7 @@ private:
   SchurSolver solver_;
 };
 
-// Returns the shared reactions by element; for joints and drives (the first `joint_rows`) with the quantities.
+// Returns the marked rows as reactions, by element. Only those of joints and drives, the first `joint_rows`, have quantities.
 std::vector<SharedReaction> reactions_of(const System& system, const std::vector<char>& is_shared, const std::vector<int>& elements) {
   std::map<int, std::vector<std::string>> found;
   for (std::size_t i = 0; i < is_shared.size(); ++i) {

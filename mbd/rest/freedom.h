@@ -13,7 +13,7 @@
 
 namespace steplap {
 
-/// Element with rows whose multipliers are not unique, and the quantities that these rows hold (RowSpec::quantity).
+/// An element with rows whose multipliers are not unique, and the quantities that these rows constrain (RowSpec::quantity).
 struct SharedReaction {
   int element = 0;
   std::vector<std::string> quantities; ///< for joints and drives; empty for friction
@@ -23,8 +23,8 @@ struct Freedom {
   int coordinates = 0;             ///< three for each movable body
   int rows = 0;                    ///< constraint rows of joints and drives
   int rank = 0;                    ///< number of independent rows
-  int rank_sticking = 0;           ///< the same with all friction sticking
-  std::vector<int> dependent_rows; ///< rows that follow from others; which one of a set is listed is arbitrary
+  int rank_sticking = 0;           ///< number of independent rows with all friction sticking
+  std::vector<int> dependent_rows; ///< rows that follow from others; which row of a dependent set is listed is arbitrary
   /// Reactions that are not unique, for joints and drives alone, and with all friction sticking.
   std::vector<SharedReaction> shared, shared_sticking;
 

@@ -38,7 +38,7 @@ void Landing::join_bodies() {
     else if (part.contact >= 0) open_.push_back({part.a, part.b, part.contact});
   }
   for (const StaticRow& row : statics_.rows()) {
-    int last = k_ground; // for a row over several bodies
+    int last = k_ground; // a row with several parts connects the bodies of all parts
     for (const RowSpec* part = row.spec; part; part = part->next) {
       join(part->a, part->b);
       const int any = part->a != k_ground ? part->a : part->b;
@@ -57,7 +57,8 @@ VecX Landing::cut_step(const VecX& step, const std::vector<double>& shares) {
   return cut;
 }
 
-// Returns the island that lands when the contact closes: the unsupported one, or of two the one that moves further; −1 if none.
+// Returns the island that lands when the contact closes: the unsupported one of the two; if both are unsupported, the one that moves
+// further. −1 if both are supported, or if both bodies are in one island.
 int Landing::lander(const Pair& pair, const VecX& step) {
   const int a = island(pair.a), b = island(pair.b);
   if (a == b || (is_carried_[a] != 0 && is_carried_[b] != 0)) return -1;
@@ -68,7 +69,8 @@ int Landing::lander(const Pair& pair, const VecX& step) {
 
 bool Landing::has_stopped(int island, double share) const { return !landed_[island].empty() && high_[island] < share; }
 
-// Returns the next share of the step for a measurement, by the number of measurements and the safe share of the islands that still move.
+// Returns the fraction of the step for the next gap measurement, from the required number of measurements and from the safe fraction for
+// those islands that still move.
 double Landing::next_share(const VecX& step, const std::vector<double>& measurements, const StepProbe& probe, double share) {
   double most = 1.0;
   std::vector<double> moving(parent_.size(), 0.0);
@@ -81,7 +83,8 @@ double Landing::next_share(const VecX& step, const std::vector<double>& measurem
   return std::min(1.0, share + std::min(1.0 / most, room));
 }
 
-// Finds the first contact of each island, measurement by measurement. Returns false if no contact closes, or one at which nothing lands.
+// Finds between which measurements the first contact of each island closes. Returns false if no contact closes, or if one closes at which
+// nothing lands.
 bool Landing::find_first(const VecX& step, const std::vector<double>& measurements, const StepProbe& probe) {
   const double* const force = statics_.evaluation().contact_force;
   std::vector<double> shares(parent_.size());
@@ -96,7 +99,7 @@ bool Landing::find_first(const VecX& step, const std::vector<double>& measuremen
       is_known[p] = 1;
       int landing = lander(open_[p], step);
       if (landing < 0) return false;
-      if (has_stopped(landing, share)) { // the other island hits this one, which has landed already
+      if (has_stopped(landing, share)) { // this island has landed already, and the other one hits it
         landing = island(open_[p].a) == landing ? island(open_[p].b) : island(open_[p].a);
         if (is_carried_[landing] != 0 || has_stopped(landing, share)) return false;
       }
@@ -109,7 +112,7 @@ bool Landing::find_first(const VecX& step, const std::vector<double>& measuremen
   return is_any;
 }
 
-// Locates the first contacts of all islands at once by bisection.
+// Locates the first contacts of all islands by simultaneous bisections.
 void Landing::locate_contact(const VecX& step, const StepProbe& probe) {
   const double* const force = statics_.evaluation().contact_force;
   std::vector<double> shares(parent_.size());

@@ -1,8 +1,8 @@
-// Cuts a step of the descent so that many bodies land in it, each at its own first contact.
+// Shortens a step of the descent such that many bodies land in it, each at its own first contact.
 //
-// An island is a set of bodies connected by rows, springs or closed contacts. Islands do not affect each other before a contact between
-// them closes. So each island that nothing supports moves up to its own first contact, and all land in one step. Cutting the whole step at
-// the first contact, as in a small model, would take one step for each landing body.
+// An island is a set of bodies connected by rows, springs or closed contacts. Islands do not affect each other until a contact between them
+// closes. Each island that nothing supports is therefore moved to its own first contact, and all land in one step. If the whole step were
+// cut at the first contact, as in a small model, each landing body would need a step.
 #pragma once
 
 #include "mbd/rest/statics.h"
@@ -14,17 +14,17 @@ namespace steplap {
 
 class Landing {
 public:
-  /// Uses the last evaluation of `statics`.
+  /// Uses the last evaluation of `statics`, which must outlive this object.
   Landing(const System& system, const Statics& statics);
 
   struct StepProbe {
     std::function<void(const VecX& step)> at;     ///< evaluates the statics at a displacement from the start of the step
-    std::function<double(const VecX& step)> room; ///< share of a step that is safe from there before the next measurement of gaps
+    std::function<double(const VecX& step)> room; ///< fraction of a step from there that is safe until gaps are measured again
   };
-  /// Cuts the part of `step` of each island where its first contact has just closed. `measurements`: number of measurements along each
-  /// body's path, 0 for the ground. `touch`: penetration after closing, m, so that rounding does not open the contact again. Returns false
-  /// and leaves the step unchanged if no contact closes, or one within an island or between two supported ones. The statics is left at an
-  /// arbitrary pose.
+  /// Shortens the part of `step` that moves each island, such that its first contact has just closed. `measurements`: number of gap
+  /// measurements along the path of each body, 0 for the ground. `touch`: penetration after closing, m, so that rounding does not open the
+  /// contact again. Returns false and leaves the step unchanged if no contact closes, or if one closes within an island or between two
+  /// supported islands. Leaves the statics at an arbitrary pose.
   bool cut(VecX& step, const std::vector<double>& measurements, double touch, const StepProbe& probe);
 
 private:
@@ -44,8 +44,8 @@ private:
   const Statics& statics_;
   std::vector<int> parent_;      ///< union-find over bodies; 0 is the ground, which connects nothing
   std::vector<Pair> open_;       ///< contacts that may close
-  std::vector<char> is_carried_; ///< islands with a closed contact
-  // Per island: shares of the step between which its first contact closes, and the contacts that close.
+  std::vector<char> is_carried_; ///< for each island: it has a closed contact
+  // For each island: fractions of the step between which its first contact closes, and the contacts that close there.
   std::vector<double> low_, high_;
   std::vector<std::vector<int>> landed_;
 };

@@ -1,9 +1,9 @@
-// Forces and stiffness about a pose, along the motions that the rows allow: the data for descent.h.
+// Forces and stiffness at a pose, along the motions that the rows allow, and steps computed from them for descent.h.
 //
 // Coordinates are scaled (SceneScale). There are two implementations. Dense: an orthonormal basis of the motions and all eigenvalues λᵢ
 // (1/s²) of the stiffness in the mass metric. Sparse, for models beyond some tens of bodies: equations bordered by the rows
-// (bordered_system.h) replace the basis, the signs of pivots replace the signs of eigenvalues, and filters λ/(λ + σ), one solution each,
-// replace the eigenvalues.
+// (bordered_system.h) take the place of the basis, signs of pivots that of signs of eigenvalues, and filters λ/(λ + σ), one solution each,
+// that of eigenvalues.
 #pragma once
 
 #include "mbd/rest/tangent.h"
@@ -33,9 +33,9 @@ public:
     const VecX& mass; ///< masses of the scaled coordinates
     double length = 1.0;
   };
-  /// Size of a step: 1 at the border of the trust region.
+  /// Function that returns the size of a step: 1 at the border of the trust region.
   using StepSize = std::function<double(const VecX&)>;
-  /// Direction without resistance to a small displacement, and the force along it with its rounding.
+  /// Direction of negative stiffness; the force along it, and the rounding error of that force.
   struct Unstable {
     VecX direction;
     double force = 0.0, rounding = 0.0;
@@ -46,43 +46,44 @@ public:
   Landscape(const Landscape&) = delete;
   Landscape& operator=(const Landscape&) = delete;
 
-  /// Linearises at the last evaluation of the statics and its rows.
+  /// Linearises at the last evaluation of the statics, with its present rows.
   virtual void linearise(const State& state) = 0;
   // The following refer to the pose of the last linearise().
   [[nodiscard]] const VecX& force() const { return force_; }        ///< force along the motions that the rows allow
   [[nodiscard]] const VecX& multipliers() const { return lambda_; } ///< multipliers of all rows
-  /// Returns the step to the balance of forces, without components along directions that have no stiffness.
+  /// Returns the Newton step to the balance of forces, without components along directions that have no stiffness.
   [[nodiscard]] virtual VecX newton_step() = 0;
-  /// Returns true if forces act along directions without stiffness.
+  /// Returns true if forces act along directions without stiffness, so that Newton's method cannot balance them.
   [[nodiscard]] virtual bool is_pushed() = 0;
   /// Returns true if the stiffness is not symmetric: follower loads and sliding friction have no potential.
   [[nodiscard]] virtual bool is_skew() const = 0;
-  /// Returns the norm of the remaining force in the mass metric.
+  /// Returns a norm of the unbalanced force in the mass metric.
   [[nodiscard]] virtual double imbalance() const = 0;
-  /// Returns a downhill step within the trust region.
+  /// Returns a downhill step within the trust region that `size` defines.
   [[nodiscard]] virtual VecX trust_step(const StepSize& size) = 0;
-  /// Returns the most unstable direction, if there is one.
+  /// Returns the direction of the most negative stiffness; nothing if there is none.
   [[nodiscard]] virtual std::optional<Unstable> most_unstable() = 0;
-  /// Returns the number of directions without resistance.
+  /// Returns the number of directions along which small displacements meet no resistance.
   [[nodiscard]] virtual int count_yielding() = 0;
   /// Returns the acceleration of the scaled coordinates.
   [[nodiscard]] virtual VecX acceleration() = 0;
-  /// Returns directions without stiffness, each by its largest component; `unnamed`: number of further ones.
+  /// Returns the directions without stiffness, each by its largest component. `unnamed` receives the number of further ones.
   [[nodiscard]] virtual std::vector<MotionPart> indifferent(int& unnamed) = 0;
 
   // The following refer to the present evaluation of the statics, which may be at another pose with the same rows.
-  /// Determines the least displacement `way` that satisfies the rows, with errors `off`. Returns its size.
+  /// Computes the least displacement `way` (in scaled coordinates) that removes the errors `off` of the rows. Returns its size.
   virtual double way_to_rows(const VecX& off, VecX& way) = 0;
   /// Returns the lengths of the rows' scaled gradients at the last way_to_rows().
   [[nodiscard]] virtual const VecX& row_size() const = 0;
-  /// Returns the part of a vector that the rows allow, as of the last way_to_rows().
+  /// Returns the component of a vector along the motions that the rows allow, with the rows of the last way_to_rows().
   [[nodiscard]] virtual VecX along_rows(const VecX& vector) const = 0;
-  /// Returns the displacement that restores the balance in the stiff directions; its largest component is returned in `size`.
+  /// Returns the displacement that balances the forces in the stiff directions. `size` receives its largest component.
   [[nodiscard]] virtual VecX stiff_imbalance(double& size) = 0;
 
 protected:
   [[nodiscard]] VecX scaled_force() const { return scene_.scale.cwiseProduct(scene_.statics.force()); }
-  /// Returns the rounding errors of forces of these sizes, from rounding of poses, stiffness and reactions.
+  /// Returns rounding errors of the forces, due to rounding of poses, stiffness and reactions. `sizes`: sums of the absolute terms of the
+  /// forces.
   [[nodiscard]] VecX rounding_of(const State& state, const VecX& sizes, const std::function<VecX(const VecX&)>& stiffness) const;
 
   StepProblem scene_;

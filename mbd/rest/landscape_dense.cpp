@@ -33,7 +33,7 @@ public:
     share_rounding_ = shape_.cwiseAbs().transpose() * rounding;
   }
 
-  // Uses the whole stiffness, which need not be symmetric.
+  // Uses the whole stiffness matrix, which need not be symmetric.
   VecX newton_step() override {
     std::vector<Eigen::Index> firm;
     for (Eigen::Index i = 0; i < value_.size(); ++i)
@@ -60,7 +60,7 @@ public:
 
   double imbalance() const override { return share_.size() > 0 ? share_.cwiseAbs().maxCoeff() : 0.0; }
 
-  // Finds σ so that the step ends at the border of the trust region. Returns Newton's step if it lies inside.
+  // Chooses σ such that the step ends at the border of the trust region. Returns Newton's step if that lies inside.
   VecX trust_step(const StepSize& size) override {
     double least = std::numeric_limits<double>::infinity(), largest = 0.0;
     for (Eigen::Index i = 0; i < value_.size(); ++i) {
@@ -90,12 +90,13 @@ public:
     Eigen::Index worst = 0;
     if (value_.size() == 0 || !(value_.minCoeff(&worst) < -value_rounding_[worst])) return std::nullopt;
     // Sliding friction depends on normal forces, but these do not depend on friction. This adds an off-diagonal stiffness k μ, which makes
-    // the symmetric part indefinite without any instability. So a real instability must also show in the eigenvalues of the whole matrix.
+    // the symmetric part indefinite although nothing is unstable. An instability must therefore appear in the eigenvalues of the whole
+    // matrix, too.
     if (is_skew() && (eigenvalues(reduced_).real().array() >= -value_rounding_.maxCoeff()).all()) return std::nullopt;
     return Unstable{shape_.col(worst), share_[worst], share_rounding_[worst]};
   }
 
-  // Includes the effect of sliding friction.
+  // Includes the effect of sliding friction, by the eigenvalues of the whole stiffness.
   int count_yielding() override {
     if (value_.size() == 0) return 0;
     const double rounding = value_rounding_.maxCoeff();
@@ -127,7 +128,7 @@ public:
 
   VecX along_rows(const VecX& vector) const override { return vector - end_.held * (end_.held.transpose() * vector); }
 
-  // Uses the stiffness at the start of the step.
+  // Uses the stiffness from the start of the step.
   VecX stiff_imbalance(double& size) override {
     VecX gradient = scaled_force();
     gradient -= end_.held * (end_.held.transpose() * gradient);

@@ -18,14 +18,14 @@ using Sparse = BorderedSystem::Sparse;
 using MatrixEntry = Statics::MatrixEntry;
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-// Relative to the largest eigenvalue: smaller ones may be rounding of the stiffness and its factors.
+// Multiple of the largest eigenvalue below which eigenvalues may be rounding errors of the stiffness and its factors.
 constexpr double k_loose = 1000.0 * k_epsilon;
 constexpr double k_small = 1e-11; // share of the size of the model; smaller steps are rounding of the pose
 constexpr int k_most_filters = 8;
-constexpr double k_well_inside = 0.5; // share of the trust region's radius; longer steps are accepted
-constexpr double k_close = 1.2;       // ratio of two σ below which another factorisation is not worth its cost
+constexpr double k_well_inside = 0.5; // fraction of the trust region's radius; steps longer than this are accepted
+constexpr double k_close = 1.2;       // ratio of the bounds of σ at which the search ends: another factorisation is not worth its cost
 constexpr int k_most_shifts = 60;
-constexpr int k_named = 24; // most directions that are named
+constexpr int k_named = 24; // largest number of directions that are described
 constexpr double k_skew = 1e-9;
 
 double largest(const VecX& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0.0; }
@@ -68,8 +68,8 @@ public:
   bool is_skew() const override { return is_skew_; }
   double imbalance() const override { return std::sqrt(force_.cwiseAbs2().cwiseQuotient(scene_.mass).sum()); }
 
-  // Finds σ by bisection between values that are too small (step too long, or stiffness not positive) and values at which the step is too
-  // short. For large σ the step is proportional to 1/σ.
+  // Finds σ by bisection between values that are too small (the step is too long, or the stiffness not positive) and values at which the
+  // step is too short. For large σ the step is proportional to 1/σ.
   VecX trust_step(const StepSize& size) override {
     used_sigma_ = loose_;
     if (!is_skew_) {
@@ -101,7 +101,7 @@ public:
     return best;
   }
 
-  // Brackets the least eigenvalue between two σ; its direction follows by inverse iteration.
+  // Brackets the least eigenvalue between −σ for two σ. The direction follows by inverse iteration.
   std::optional<Unstable> most_unstable() override {
     if (is_definite(loose_)) return std::nullopt;
     double low = loose_, high = 8.0 * loose_;
@@ -119,8 +119,8 @@ public:
     return Unstable{x, x.dot(force_), x.cwiseAbs().dot(rounding_)};
   }
 
-  // Uses the symmetric stiffness without the dependence of sliding friction on normal forces: counts directions that only friction would
-  // resist.
+  // Counts the directions that only friction would resist, too: the dependence of sliding friction on normal forces is not part of the
+  // symmetric stiffness used here.
   int count_yielding() override { return negative_at(-loose_); }
 
   VecX acceleration() override {
@@ -183,8 +183,8 @@ public:
   }
 
 private:
-  // If forces hardly act along the eigenvector of the least eigenvalue, adds that direction up to the border of the trust region; both
-  // signs lead downhill.
+  // Extends the step to the border of the trust region by the eigenvector of the least eigenvalue, for the case that forces hardly act
+  // along it. Both signs of the eigenvector lead downhill.
   void add_soft_direction(const StepSize& size, VecX& step) {
     VecX soft = Spread().vector(n_), next;
     if (!factor(used_sigma_)) return;
@@ -192,14 +192,14 @@ private:
       if (!steps_.solve(inertia_.cwiseProduct(soft), next)) return;
       soft = next / std::sqrt(next.cwiseAbs2().dot(scene_.mass));
     }
-    // Only if its Rayleigh quotient is negative.
+    // Iteration may not have found a direction of negative stiffness: its Rayleigh quotient must be negative.
     if (!(soft.dot(VecX(hat_ * soft)) < 0.0)) return;
     if (soft.dot(force_) < 0.0) soft = -soft;
     const double whole = size(soft);
     if (whole > 0.0) step += (1.0 - size(step)) / whole * soft;
   }
 
-  // Factorises the rows, which also gives the projection onto the motions that they allow.
+  // Factorises the rows for the projection onto the motions that they allow.
   void factor_rows() {
     if (rows().empty()) return;
     onto_rows_.set(identity_, rows(), VecX::Zero(n_));
@@ -253,14 +253,15 @@ private:
     return true;
   }
   bool is_definite(double sigma) { return factor(sigma) && steps_.negative() == 0; }
-  // Returns the number of eigenvalues below −σ; σ is increased slightly if a pivot vanishes.
+  // Returns the number of eigenvalues below −σ. If a pivot vanishes, σ is increased slightly.
   int negative_at(double sigma) {
     for (int i = 0; i < 4; ++i, sigma *= 1.1)
       if (factor(sigma)) return steps_.negative();
     return 0;
   }
 
-  // Multiplies the component of x along each eigenvector by λ/(λ + σ). Returns false if the solution fails.
+  // Multiplies the component of x along each eigenvector by λ/(λ + σ), which removes directions without stiffness. Returns false if the
+  // solution fails.
   bool keep_firm(double sigma, VecX& x) const {
     VecX loose;
     if (!apply(sigma * inertia_.cwiseProduct(x), loose)) return false;
@@ -301,7 +302,7 @@ private:
     is_newton_downhill_ = is_definite(loose_);
     const bool is_factored = is_skew_ ? factor_skew() : factor(loose_);
     if (!is_factored || !apply(force_ / size_, newton_)) {
-      newton_ = VecX::Constant(n_, 1e6 * scene_.length); // no usable step
+      newton_ = VecX::Constant(n_, 1e6 * scene_.length); // larger than any trust region, so not usable as a step
       is_newton_downhill_ = false;
       return;
     }
@@ -322,7 +323,7 @@ private:
     is_pushed_ = size > 0.0 && std::abs(loose.dot(force_)) > loose.cwiseAbs().dot(rounding_);
   }
 
-  // Marks coordinates without stiffness or rows.
+  // Marks the coordinates on which no stiffness and no row acts.
   [[nodiscard]] std::vector<char> bare_coordinates() const {
     std::vector<char> is_bare(static_cast<std::size_t>(n_), 1);
     for (int c = 0; c < hat_.outerSize(); ++c)
@@ -334,7 +335,7 @@ private:
     return is_bare;
   }
 
-  // Names some of the directions without stiffness, found by subspace iteration; each by a coordinate that distinguishes it from the
+  // Describes `count` of the directions without stiffness, found by subspace iteration, each by a coordinate that distinguishes it from the
   // others.
   void name_directions(int count, const std::vector<char>& is_bare, std::vector<MotionPart>& parts) {
     if (!factor(loose_)) return;

@@ -47,7 +47,7 @@ FreeVibration free_vibration(const System& system, State state) {
   return v;
 }
 
-// Returns the complex displacements of all bodies.
+// Returns the complex displacements (x, y, θ) of all bodies, ground included, from the coordinates q.
 std::vector<Complex> shape_of(const System& system, const ComplexVector& q) {
   std::vector<Complex> shape(3 * system.bodies.size(), 0.0);
   Complex largest = 0.0;

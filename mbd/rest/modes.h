@@ -3,9 +3,9 @@
 // The equations of statics (statics.h) are linearised and reduced to the motions that constraints, drives and sticking friction leave free:
 // δq = Z η with J Z = 0 and Zᵀ M Z = 1. Then
 //   η'' = A η + B η',   A = Zᵀ K Z,   B = Zᵀ ∂Q/∂v Z   (free_vibration.h).
-// Dense algebra finds all modes of models with up to some hundred bodies. For larger ones, sparse algebra finds the slowest modes or those
-// near a frequency in a small subspace (sparse_modes.h). Drives hold their coordinates; a base that moves or accelerates is taken as held
-// (Equilibrium reports it). Closed contacts stay closed and sticking joints stick: amplitudes are assumed small enough for that.
+// Dense algebra finds all modes of models with up to some hundred bodies. For larger ones, sparse algebra finds the slowest modes, or those
+// near a frequency, in a small subspace (sparse_modes.h). Assumptions: drives hold their coordinates (a moving or accelerating base counts
+// as held, which Equilibrium reports), closed contacts stay closed, and sticking joints stick, because amplitudes are small.
 #pragma once
 
 #include "mbd/base/portable_math.h"
@@ -27,8 +27,8 @@ struct VibrationMode {
   /// Displacements (x, y, θ) of the centre of gravity of each body, in m and rad. Scaled so that the largest of the displacements and of
   /// radius of gyration times θ is real and 1 m. Body 0 is the ground.
   std::vector<std::complex<double>> shape;
-  /// Remaining acceleration of the mode over its own, in the mass metric and along free motions. Without damping this bounds the relative
-  /// error of the squared frequency.
+  /// Remaining acceleration of the mode over its own acceleration, in the mass metric and along free motions. Without damping, this bounds
+  /// the relative error of the squared frequency.
   double residual = 0.0;
 
   /// Returns false if the mode decays or grows without oscillation.
@@ -38,11 +38,11 @@ struct VibrationMode {
   [[nodiscard]] double damping_ratio() const;     ///< −Re/|eigenvalue|; negative if the mode grows
 };
 
-/// Selection of modes.
+/// Selection of modes by number and frequency.
 struct WantedModes {
   int count = 0;              ///< 0: all modes, or k_usual_modes of a large model
   std::optional<double> near; ///< Hz: modes whose eigenvalues are nearest to 2π i times this; empty: the slowest
-  /// Returns the distance by which modes are selected, 1/s.
+  /// Returns the distance of an eigenvalue from the selected frequency, 1/s; the modes with the smallest distances are selected.
   [[nodiscard]] double distance(const std::complex<double>& eigenvalue) const;
 };
 
@@ -51,17 +51,17 @@ struct VibrationModes {
   std::vector<VibrationMode> modes; ///< by ascending natural frequency, without rigid motions
   int rigid_motions = 0;            ///< number of coordinates without stiffness, damped or not
   bool is_all = true;               ///< the model has no further modes
-  bool is_counted = true;           ///< completeness was checked: none of the selected modes is missing (sparse_modes.h), or all were found
+  bool is_counted = true;           ///< no selected mode is missing: checked by a count (sparse_modes.h), or all modes were found
 };
 
 /// Largest number of coordinates for which dense algebra finds all modes.
 inline constexpr int k_max_modal_coordinates = 1500;
 inline constexpr int k_usual_modes = 20; ///< default number of modes of larger models
 
-enum class ModesAlgebra { by_size, dense, sparse }; ///< Algebra for the modes; by_size: dense for small models, sparse for large ones.
+enum class ModesAlgebra { by_size, dense, sparse }; ///< Algebra for the modes. by_size: dense for small models, sparse for large ones.
 
-/// Returns the modes about `state`, which must be an equilibrium. Throws NumericalFailure if they do not converge. `algebra`: for tests
-/// that compare the two.
+/// Returns the modes about `state`, which must be an equilibrium. Throws NumericalFailure if they do not converge. `algebra` is for tests
+/// that compare dense and sparse algebra.
 [[nodiscard]] VibrationModes vibration_modes(const System& system, const State& state, WantedModes wanted = {},
                                              ModesAlgebra algebra = ModesAlgebra::by_size);
 

@@ -1,7 +1,8 @@
-// Static equilibrium of a machine at rest whose loads have increased slowly. find_equilibrium (equilibrium.h) asks whether a machine can
-// rest with any admissible distribution of friction forces. Under a slowly growing load the distribution is determined: sticking friction
-// holds its position and slides at its bound once that is reached. So this search neither redistributes forces nor releases a damped
-// machine. It fails if the machine would leave its equilibrium.
+// Static equilibrium of a machine at rest whose loads have grown slowly.
+//
+// find_equilibrium() (equilibrium.h) accepts any admissible distribution of friction forces. Under slowly growing loads the distribution is
+// determined: sticking friction keeps its position, and slides at its bound once that is reached. This search therefore neither
+// redistributes friction forces nor releases a damped machine. It fails if the machine would leave its equilibrium.
 #pragma once
 
 #include "mbd/rest/equilibrium.h"
@@ -9,7 +10,7 @@
 
 namespace steplap {
 
-/// Error: the search did not converge, so it is unknown whether an equilibrium exists.
+/// Error of a search that did not converge, so that it is unknown whether an equilibrium exists.
 class RestNotFound : public ElementFailure {
 public:
   using ElementFailure::ElementFailure;

@@ -18,11 +18,11 @@ constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 constexpr double k_first = 1e-4; // displacement of the first step, relative to the size of the model
 // Largest displacement of a step, relative to the size of the model, and largest rotation, rad.
 constexpr double k_move = 0.05, k_turn = 0.1;
-constexpr double k_balanced = 1e-9; // share of the initial accelerations; the remaining imbalance is left to Newton's method
-constexpr double k_shortest = 1e-5; // share of the longest step; time stepping takes steps below a tenth of it for rounding
+constexpr double k_balanced = 1e-9; // fraction of the initial accelerations; Newton's method removes the remaining imbalance
+constexpr double k_shortest = 1e-5; // fraction of the longest step; in shorter steps rounding errors would dominate
 constexpr double k_touch = 64.0;    // in roundings of the largest coordinate
 constexpr double k_on_rows = 1e-12; // m, rad
-// Limits of steps, and of their number times the square of the number of rows and coordinates.
+// Limits of the number of steps, and of that number times the square of the number of rows and coordinates.
 constexpr int k_most_steps = 4000, k_least_steps = 100;
 constexpr double k_most_work = 4e8;
 
@@ -101,7 +101,7 @@ private:
       way[k] = next.q[static_cast<std::size_t>(k) + 3] - state_.q[static_cast<std::size_t>(k) + 3];
     return way;
   }
-  // Returns the size of a displacement; 1 is the largest one permitted in a step.
+  // Returns the size of a displacement, relative to the largest one allowed in a step.
   [[nodiscard]] double size_of(const VecX& way) const {
     double size = 0.0;
     for (Eigen::Index k = 0; k < way.size(); ++k) size = std::max(size, std::abs(way[k]) / (k % 3 < 2 ? k_move * scene_.length : k_turn));
@@ -111,8 +111,8 @@ private:
     return way.cwiseQuotient(scene_.scale).cwiseAbs().maxCoeff() / (h * h);
   }
 
-  // Returns the largest acceleration, m/s², that the forces on a body would cause without joints and friction; angles count at their
-  // radius. Constrained accelerations would hide forces that joints and friction resist.
+  // Returns the largest acceleration, m/s², that the forces on a body would cause without joints and friction; angular accelerations are
+  // multiplied by the body's radius. Accelerations with constraints would not show forces that joints and friction resist.
   [[nodiscard]] double largest_at_start() {
     Statics statics(system_);
     State state = state_;

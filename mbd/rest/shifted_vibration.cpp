@@ -14,7 +14,7 @@ using Sparse = SparseVibration::Sparse;
 using MatrixEntry = Statics::MatrixEntry;
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-// Relative to the largest eigenvalue: smaller ones may be rounding of the stiffness and its factors.
+// Multiple of the largest eigenvalue below which eigenvalues may be rounding errors of the stiffness and its factors.
 constexpr double k_loose = 1000.0 * k_epsilon;
 constexpr double k_skew = 1e-9;
 
@@ -119,7 +119,7 @@ int SparseVibration::free_count() const {
 }
 
 int SparseVibration::count_below(double s) {
-  for (int i = 0; i < 4; ++i, s *= 1.0 + 1e-9) // a slightly larger s avoids a vanishing pivot
+  for (int i = 0; i < 4; ++i, s *= 1.0 + 1e-9) // if a pivot vanishes, s is increased slightly
     if (counting_.factor(-s)) return counting_.negative() - bare_count_;
   throw NumericalFailure("the motions that are softer than others cannot be counted: a pivot vanishes");
 }
@@ -136,7 +136,7 @@ bool ShiftedResponse::factor(const SparseVibration& scene, std::complex<double> 
   is_complex_ = sigma.imag() != 0.0;
   const int parts = is_complex_ ? 2 : 1;
   std::vector<MatrixEntry> entries;
-  // The real and imaginary part of an unknown are adjacent.
+  // Real and imaginary part of an unknown are neighbours in the vector of unknowns.
   const auto put = [&](int row, int column, std::complex<double> value) {
     entries.emplace_back(parts * row, parts * column, value.real());
     if (!is_complex_) return;
@@ -153,7 +153,7 @@ bool ShiftedResponse::factor(const SparseVibration& scene, std::complex<double> 
   const int n = static_cast<int>(n_);
   for (int r = 0; r < static_cast<int>(m_); ++r) {
     const SparseRow& row = scene.rows()[static_cast<std::size_t>(r)];
-    if (row.count == 0) put(n + r, n + r, 1.0); // the row is dependent
+    if (row.count == 0) put(n + r, n + r, 1.0); // a dependent row, which is empty
     for (int k = 0; k < row.count; ++k) {
       put(n + r, row.at[k], row.j[k]);
       put(row.at[k], n + r, row.j[k]);

@@ -1,4 +1,4 @@
-// Matrices of small vibrations of a large model, and solutions of the shifted equations at one point σ of the complex plane.
+// Matrices for small vibrations of a large model, and solutions of their equations shifted by a complex number σ.
 #pragma once
 
 #include "mbd/rest/bordered_system.h"
@@ -12,8 +12,8 @@
 
 namespace steplap {
 
-/// Matrices of λ² M + λ D̂ + K̂ along the rows, in scaled coordinates (tangent.h), divided by a common size so that entries of K̂ are of
-/// order 1.
+/// The matrices of (λ² M + λ D̂ + K̂) x along the rows, in scaled coordinates (tangent.h), divided by a common factor such that entries of
+/// K̂ are of order 1.
 class SparseVibration {
 public:
   using Sparse = BorderedSystem::Sparse;
@@ -29,19 +29,19 @@ public:
   [[nodiscard]] const std::vector<SparseRow>& rows() const { return rows_.rows(); }
   [[nodiscard]] bool is_symmetric() const { return is_symmetric_; } ///< K̂ is symmetric
   [[nodiscard]] bool is_damped() const { return is_damped_; }
-  /// Marks coordinates on which no force and no row acts.
+  /// Returns flags of the coordinates on which no force and no row acts.
   [[nodiscard]] const std::vector<char>& bare() const { return bare_; }
   [[nodiscard]] int bare_count() const { return bare_count_; }
   [[nodiscard]] int free_count() const; ///< coordinates minus independent rows
-  /// Bounds of squared frequencies, 1/s²: smaller ones than loose() may be rounding, none exceeds stiffest().
+  /// Bounds of squared frequencies, 1/s². Values below loose() may be rounding errors; no value exceeds stiffest().
   [[nodiscard]] double loose() const { return loose_; }
   [[nodiscard]] double stiffest() const { return stiffest_; }
   [[nodiscard]] double fastest_decay() const { return fastest_decay_; } ///< upper bound of decay rates by damping alone, 1/s
 
-  /// Returns the number of directions within the rows in which the symmetric part of K̂ − s M is negative, without bare coordinates.
+  /// Returns the number of directions along the rows in which the symmetric part of K̂ − s M is negative; bare coordinates are not counted.
   /// Precondition: s > 0.
   [[nodiscard]] int count_below(double s);
-  /// Returns M⁻¹ f along the rows.
+  /// Returns M⁻¹ f, projected onto the motions that the rows allow.
   [[nodiscard]] VecX acceleration(const VecX& f) const;
 
 private:
@@ -60,12 +60,12 @@ private:
   BorderedSystem by_mass_, counting_;
 };
 
-/// Factors of σ² M + σ D̂ + K̂, bordered by the rows. For complex σ real and imaginary parts are separate unknowns.
+/// Factors of σ² M + σ D̂ + K̂, bordered by the rows. For complex σ, real and imaginary parts are separate unknowns.
 class ShiftedResponse {
 public:
-  /// Factorises. Returns false if the matrix is singular.
+  /// Factorises the matrix for this σ. Returns false if it is singular.
   bool factor(const SparseVibration& scene, std::complex<double> sigma);
-  /// Returns a with (σ² M + σ D̂ + K̂) a + Jᵀ y = f and J a = 0.
+  /// Returns the solution a of (σ² M + σ D̂ + K̂) a + Jᵀ y = f, J a = 0.
   [[nodiscard]] Eigen::VectorXcd solve(const Eigen::VectorXcd& f) const;
 
 private:

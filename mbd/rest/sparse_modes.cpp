@@ -20,9 +20,9 @@ using Complex = std::complex<double>;
 using ComplexVector = Eigen::VectorXcd;
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-constexpr double k_new = 1e-9;              // share of a vector's length: least part outside the basis for a new direction
+constexpr double k_new = 1e-9;              // fraction of a vector's length: least part outside the basis that counts as a new direction
 constexpr double k_residual = 1e-9;         // largest residual, relative to the mode's own acceleration
-constexpr double k_out_of_balance = 1e-4;   // the same if W is the whole space of the model and cannot grow any more
+constexpr double k_out_of_balance = 1e-4;   // largest residual if W spans all motions of the model and cannot grow
 constexpr double k_rounded_terms = 32.0;    // epsilons of the terms in a residual
 constexpr double k_same = 1e-6;             // relative difference of squared frequencies that count as equal
 constexpr double k_well_below = 1.0 / 64.0; // ratio of σ² to the square of the first frequency
@@ -30,7 +30,7 @@ constexpr int k_starts = 3;                 // starting vectors, in addition to 
 constexpr int k_beyond = 2;                 // modes after the last wanted one that must be known too
 constexpr int k_most_rigid = 200;
 
-// The basis W with the Krylov vectors in it.
+// The basis W, with the Krylov vectors as components in it.
 class MotionSpace {
 public:
   MotionSpace(const SparseVibration& scene, Complex sigma, double rate, int most)
@@ -41,8 +41,8 @@ public:
   [[nodiscard]] auto directions() const { return w_.leftCols(size_); }
   [[nodiscard]] int size() const { return size_; }
 
-  // Adds a starting vector: the response to pseudo-random forces that do no work on W, since otherwise known modes would hide unknown ones.
-  // Returns false if no direction is left.
+  // Adds a starting vector: the response to pseudo-random forces that do no work on W. Otherwise modes that are known already would
+  // dominate. Returns false if no direction is left.
   bool add_start() {
     VecX x = spread_.vector(scene_.coordinates()).cwiseQuotient(scene_.mass().cwiseSqrt());
     for (Eigen::Index i = 0; i < x.size(); ++i)
@@ -59,7 +59,7 @@ public:
     return true;
   }
 
-  // Expands the space to `wanted` directions. Returns false if the vectors give no more.
+  // Expands W to `wanted` directions. Returns false if the Krylov vectors do not give so many.
   bool grow(int wanted) {
     while (size_ < wanted && next_ < vectors_.size()) expand(vectors_[next_++]);
     return size_ >= wanted;
@@ -79,7 +79,7 @@ private:
     push(next);
   }
 
-  // Adds the components of a displacement along W to `at`, and extends W by the rest.
+  // Adds the components of a displacement along W to `at`. A part of the displacement outside W becomes a new direction of W.
   void take(const ComplexVector& a, ComplexVector& at) {
     take_part(a.real(), Complex(1.0), at);
     if (sigma_.imag() != 0.0 || a.imag().cwiseAbs().maxCoeff() > 0.0) take_part(a.imag(), Complex(0.0, 1.0), at);
@@ -111,7 +111,7 @@ private:
 
   const SparseVibration& scene_;
   const Complex sigma_;
-  double rate_; ///< 1/s: velocities are divided by it to count as displacements
+  double rate_; ///< 1/s; velocities are divided by this to have the size of displacements
   const int most_;
   int size_ = 0;
   MatX w_;
@@ -124,7 +124,7 @@ private:
 class Search {
 public:
   Search(const System& system, State& state, const WantedModes& wanted) : scene_(system, state), wanted_(wanted) {
-    // Bare coordinates are rigid motions and are counted separately.
+    // Bare coordinates are rigid motions, which are counted separately.
     directions_ = scene_.free_count() - scene_.bare_count();
   }
 
@@ -149,7 +149,7 @@ public:
       const bool is_whole = space.size() == directions_, is_found = look(space);
       if (is_found || (is_whole && worst_ < k_out_of_balance)) return finished(is_whole);
       if (is_whole || space.size() < wanted || space.size() >= most) fail();
-      for (int i = 0; i < k_starts && space.add_start(); ++i) { // a frequency may have more modes than there are starting vectors
+      for (int i = 0; i < k_starts && space.add_start(); ++i) { // a frequency may have more modes than the number of starting vectors
       }
     }
   }
@@ -165,7 +165,7 @@ private:
     return std::move(found_);
   }
 
-  // Returns σ; nothing if the model has only motions at constant velocity.
+  // Returns the shift σ; nothing if the only motions of the model are at constant velocity.
   std::optional<Complex> expansion_point() {
     if (wanted_.near && *wanted_.near > 0.0) return Complex(0.0, 2.0 * std::numbers::pi * *wanted_.near);
     if (rigid_ == 0) return Complex(0.0);
@@ -176,7 +176,7 @@ private:
     return std::nullopt;
   }
 
-  // Determines the modes along W. Returns true if the wanted ones are accurate and none is missing.
+  // Computes the modes along W. Returns true if the wanted ones are accurate and none is missing.
   bool look(const MotionSpace& space) {
     FreeVibration v;
     v.basis = space.directions();
@@ -206,7 +206,7 @@ private:
     return is_complete(v);
   }
 
-  // Projects a mode onto the rows and determines its residual. Returns false if that is too large.
+  // Projects a mode onto the rows and computes its residual. Returns false if the residual is too large.
   bool measure(SparseModes::Mode& mode) const {
     const Complex i(0.0, 1.0), l = mode.eigenvalue;
     const auto along_rows = [this, i](const ComplexVector& f) -> ComplexVector {
@@ -238,7 +238,7 @@ private:
     return found_.is_counted = are_all_within();
   }
 
-  // Returns true if W has as many directions softer than s as the model.
+  // Returns true if W has as many directions softer than s as the model has.
   bool is_full_below(const FreeVibration& v, double s) {
     if (s <= scene_.loose()) return true;
     MatX less = -0.5 * (v.a + v.a.transpose());
@@ -247,8 +247,8 @@ private:
     return (values.array() < 0.0).count() == scene_.count_below(s);
   }
 
-  // Undamped model: returns true if the number of modes found equals the number between the farthest one and its mirror image about the
-  // frequency.
+  // For undamped models near a frequency: returns true if the number of modes found equals the number of modes within the distance of the
+  // farthest one, on both sides of the frequency.
   bool are_all_within() {
     const double middle = 2.0 * std::numbers::pi * *wanted_.near;
     double reach = 0.0;

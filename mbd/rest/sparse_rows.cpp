@@ -46,7 +46,7 @@ void SparseRows::find_dependent(const Statics& statics) {
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const SparseRow& row = rows_[r];
     is_friction[r] = statics.rows()[r].friction >= 0 ? 1 : 0;
-    std::size_t at = r; // part of the row beyond two bodies
+    std::size_t at = r; // index of the present part of the row
     for (int k = 0; k < row.count; ++k) {
       const int side = k / 3 % 2, c = k % 3;
       if (k > 0 && k % 6 == 0) {

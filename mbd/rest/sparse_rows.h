@@ -1,4 +1,4 @@
-// Rows of a model at rest for sparse equations: in scaled coordinates, with unit length, and with dependent rows marked.
+// Constraint rows of a model at rest for sparse equations: in scaled coordinates, normalised to unit length, with dependent rows marked.
 #pragma once
 
 #include "mbd/dynamics/schur.h"
@@ -11,10 +11,10 @@ namespace steplap {
 
 class SparseRows {
 public:
-  /// Measures the rows at the present evaluation of `statics`. Rows known to be dependent are left empty.
+  /// Computes the rows at the present evaluation of `statics`. Rows that are known to be dependent become empty.
   void measure(const Statics& statics, const VecX& scale);
-  /// Measures the rows and determines again which are dependent, by the rule of the equations of motion (schur.h). A nearly dependent row
-  /// would otherwise hold motions that no row holds.
+  /// Computes the rows and determines anew which are dependent, by the rule of the equations of motion (schur.h). A nearly dependent row,
+  /// if it were kept, would hold motions that are free.
   void measure_and_rank(const Statics& statics, const VecX& scale);
 
   [[nodiscard]] const std::vector<SparseRow>& rows() const { return rows_; }
@@ -29,7 +29,7 @@ private:
   std::vector<SparseRow> rows_;
   VecX size_;
   std::vector<char> is_dependent_;
-  std::vector<int> bodies_; ///< bodies of the rows for which rank_ was analysed
+  std::vector<int> bodies_; ///< bodies on which the rows act, for which rank_ was analysed
   SchurSolver rank_;
 };
 

@@ -1,4 +1,4 @@
-// Pseudo-random vectors from which a search for directions starts.
+// Pseudo-random vectors as starting points of iterations.
 #pragma once
 
 #include "mbd/base/types.h"

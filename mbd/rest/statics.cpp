@@ -12,17 +12,17 @@ namespace {
 
 using D12 = Dual<12>;
 
-// Reduction of sliding friction below its bound, relative. When the element comes to rest it must stick with this force, so the force has
-// to lie inside the bound by more than rounding.
+// Relative reduction of sliding friction below its bound. When the element comes to rest, it must stick with this force, which therefore
+// has to be inside the bound by more than rounding errors.
 constexpr double k_short_of_bound = 1e-6;
 
-// Returns the index of coordinate k of the row's pair (a, b) in the vector of all coordinates; −1 for the ground.
+// Returns the index, in the vector of all coordinates, of coordinate k (0 … 5) of the row's bodies a and b; −1 for the ground.
 int place_of(const RowSpec& row, int k) {
   const int body = k < 3 ? row.a : row.b;
   return body == k_ground ? -1 : 3 * (body - 1) + k % 3;
 }
 
-// Adds w ∂²(measure)/∂q² of one part of a row to k.
+// Adds the entries w ∂²(measure)/∂q² of one part of a row to k.
 void add_curvature(const RowSpec& row, const std::vector<Motion<double>>& motion, double w, std::vector<Statics::MatrixEntry>& k) {
   const RowGradient<D12> g = row_gradient(row, seeded(motion[row.a], 0), seeded(motion[row.b], 3));
   for (int i = 0; i < 6; ++i)
@@ -183,8 +183,8 @@ void Statics::damping(std::vector<MatrixEntry>& d) const {
   for (const PairJacobian& part : parts) add_pair(part.a, part.b, part.damping, d);
 }
 
-// Adds the stiffness of a sliding force w(N) along its row: w ∂²(measure)/∂q², and the change of w by the normal forces N, in which w is
-// linear.
+// Adds the derivatives of a sliding friction force w(N): w ∂²(measure)/∂q² along its row, and the change of w with the normal forces N, on
+// which it depends linearly.
 void Statics::add_sliding_stiffness(int f, const std::vector<PairJacobian>& parts, bool with_sliding, std::vector<MatrixEntry>& k) const {
   const RowSpec& row = *system_.frictions[f].friction->rows(state_->friction[f]);
   double wrench[3], more[3];

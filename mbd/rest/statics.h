@@ -1,8 +1,8 @@
-// Forces, constraint rows and their exact derivatives at rest.
+// Forces, constraint rows and their exact derivatives for a machine at rest.
 //
-// Coordinates are x, y, θ of every body except the ground, independent of how a run would merge or lock bodies: welds and drives are
-// ordinary rows. All velocities are zero. Drives hold their coordinates at the values for the time of the state. Contacts and tables have
-// the modes of the pose. Sticking friction contributes rows, slipping friction a force at its bound opposed to the slip.
+// Coordinates are x, y, θ of every body except the ground. Unlike in a run, bodies are not merged or locked: welds and drives are ordinary
+// rows. All velocities are zero. Drives hold their coordinates at the values for the time of the state. Contacts and tables have the modes
+// of the pose. Sticking friction contributes rows; slipping friction exerts a force at its bound, opposed to the slip.
 //   Q + Jᵀλ = 0,   K = ∂(Q + Jᵀλ)/∂q at constant λ
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace steplap {
 
-/// Active row: of a joint or drive, or of sticking friction.
+/// An active row: of a joint or drive, or of sticking friction.
 struct StaticRow {
   const RowSpec* spec = nullptr;
   int row = -1;         ///< bilateral row, or −1
@@ -27,10 +27,10 @@ class Statics {
 public:
   explicit Statics(const System& system);
 
-  /// Evaluates forces at `state`. Reads poses, time, friction and bases of rows; sets modes from the poses.
+  /// Evaluates forces at the poses, time, friction states and bases of rows in `state`. Sets the modes in `state` from the poses.
   void evaluate(State& state);
-  /// Collects the rows active in `state`, those of joints and drives first. `left_out`: flags per slot of Snapshot::friction_force for
-  /// dependent friction rows to omit; empty: none.
+  /// Lists the rows that are active in `state`, those of joints and drives first. `left_out`: flags by friction row (slot in
+  /// Snapshot::friction_force) of dependent rows to be omitted; empty: none.
   void collect_rows(const State& state, const std::vector<char>& left_out = {});
   [[nodiscard]] const std::vector<StaticRow>& rows() const { return rows_; }
   [[nodiscard]] int bilateral_count() const { return bilateral_count_; }
@@ -42,17 +42,17 @@ public:
   [[nodiscard]] VecX off() const;                            ///< error of each row from its target, m or rad
   [[nodiscard]] MatX stiffness(const VecX& lambda) const;    ///< K
   [[nodiscard]] MatX damping() const;                        ///< ∂Q/∂v
-  // Sparse forms of these matrices: functions that append entries; duplicates add up.
+  // Sparse forms of these matrices: the functions append entries, and entries at the same place add up.
   using MatrixEntry = Eigen::Triplet<double, int>;
   void gradient(std::vector<MatrixEntry>& entries) const;
-  /// Adds the entries of K. `with_sliding`: include the dependence of sliding friction on normal forces.
+  /// Appends the entries of K. `with_sliding`: includes the derivatives of sliding friction by normal forces.
   void stiffness(const VecX& lambda, std::vector<MatrixEntry>& entries, bool with_sliding = true) const;
   void damping(std::vector<MatrixEntry>& entries) const;
   [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
-  /// Returns the normal force of a contact, which may be changed to test its effect on friction.
+  /// Returns a reference to the normal force of a contact, which callers may change temporarily to find its effect on friction.
   [[nodiscard]] double& contact_force(int contact) { return arrays_.contact_force[contact]; }
-  /// Returns the wrench of friction element f while it slips, along its rows.
+  /// Writes the wrench, along its rows, of the slipping friction element f to `wrench`.
   void slip_wrench(int f, double* wrench) const;
 
 private:
@@ -66,14 +66,14 @@ private:
   Evaluation evaluation_;
   FrictionScratches scratch_;
   std::vector<Motion<double>> motion_;
-  mutable EvaluationArrays arrays_; ///< rates of inner states are not used at rest
+  mutable EvaluationArrays arrays_; ///< the rates of inner states in it are not used
   std::vector<StaticRow> rows_;
   VecX force_;
 };
 
-/// Returns the target value of `row` at rest, at the time of `state`.
+/// Returns the value that the row prescribes for its measure at rest, at the time of `state`.
 [[nodiscard]] double static_target(const RowSpec& row, const State& state);
-/// Anchors the rows of friction element f at the pose of `state`.
+/// Sets the anchors of the rows of friction element f (RowSpec::base) to the pose of `state`.
 void anchor_friction(const System& system, State& state, int f);
 
 } // namespace steplap

@@ -10,12 +10,13 @@ namespace steplap {
 
 namespace {
 
-// Least independent part of a row, relative to its length; rows with less are dependent. The first value is for joints, the second for
+// Rows whose independent part, relative to their length, is below this are dependent. The first value is for joints, the second for
 // friction, as in the equations of motion (theory.md).
 constexpr double k_rank = 1e-9, k_friction_rank = 1e-6;
 constexpr double k_least_radius = 1e-3; // share of the size of the model
 
-// Returns the indices of independent rows, those of joints first, then friction. `rows`: unit columns.
+// Returns the indices of independent rows: of the first `joints` columns, which are joints, then of friction. `rows` has a unit column for
+// each row.
 std::vector<int> independent(const MatX& rows, Eigen::Index joints) {
   std::vector<int> kept;
   const Eigen::Index n = rows.rows(), frictions = rows.cols() - joints;

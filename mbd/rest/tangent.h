@@ -1,4 +1,4 @@
-// Motions that the rows of a model at rest leave free, in coordinates of comparable size.
+// Motions that the constraint rows of a model at rest leave free, in coordinates of comparable size.
 #pragma once
 
 #include "mbd/rest/statics.h"
@@ -9,8 +9,8 @@
 
 namespace steplap {
 
-/// Restricts dense products to this thread while it exists. At this size threads gain nothing, and waiting threads take processor time from
-/// others.
+/// Restricts dense matrix products to this thread while it exists. For matrices of this size several threads gain nothing, and waiting
+/// threads take processor time from others.
 class OneThread {
 public:
   OneThread() : before_(Eigen::nbThreads()) { Eigen::setNbThreads(1); }
@@ -22,7 +22,7 @@ private:
   int before_;
 };
 
-/// Sizes of a model: the whole, and for each body the radius by which its angle is converted into a length.
+/// Lengths by which the coordinates of a model are scaled.
 struct SceneScale {
   double length = 1.0; ///< m: extent of its bodies, or largest distance of a joint from the centre of its body
   double reach = 1.0;  ///< m: largest coordinate, at least `length`
@@ -31,15 +31,16 @@ struct SceneScale {
 [[nodiscard]] SceneScale scale_of(const System& system, const State& state);
 
 struct Tangent {
-  MatX held;             ///< orthonormal basis of the motions held by independent rows, scaled coordinates
-  MatX free;             ///< orthonormal complement of `held`: the free motions
+  MatX held;             ///< orthonormal basis of the motions that the independent rows hold, scaled coordinates
+  MatX free;             ///< orthonormal basis of the free motions, the complement of `held`
   std::vector<int> kept; ///< indices of independent rows
   MatX triangle;         ///< held · triangle = gradients of the kept rows
   VecX row_size;         ///< length of each row's scaled gradient
 };
-/// Returns the tangent at the last evaluation of `statics`. `kept`: the independent rows, if known; then `free` is left empty.
+/// Returns the tangent at the last evaluation of `statics`. `kept`: indices of the independent rows, if they are known; then `free` is left
+/// empty.
 [[nodiscard]] Tangent tangent_of(const Statics& statics, const VecX& scale, const std::vector<int>* kept = nullptr);
-/// Returns the multipliers that balance the forces; zero for dependent rows.
+/// Returns the multipliers of all rows that balance the forces; those of dependent rows are zero.
 [[nodiscard]] VecX multipliers_of(const Statics& statics, const VecX& scale, const Tangent& tangent);
 
 } // namespace steplap
