@@ -14,19 +14,19 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_slope_ceiling = 1e-2; // larger errors do not follow the tolerance yet and are not fitted
-constexpr double k_slope_floor = 10.0;   // times the resolution; smaller errors contain the reference's own error
+constexpr double k_slope_ceiling = 1e-2; // larger errors do not follow the tolerance yet and are not used in the fit
+constexpr double k_slope_floor = 10.0;   // times the resolution; smaller errors would be dominated by that of the reference
 constexpr long k_steps_between_checks = 512;
 
 constexpr double k_cost_power = 0.2;  // number of steps ~ tolerance^(−1/5): order 5
 constexpr double k_least_cost = 1e-6; // s; replaces a measured time of zero
-constexpr double k_small_part = 0.02; // share of the budget; only shorter runs are repeated to measure their time
+constexpr double k_small_part = 0.02; // fraction of the budget; only shorter runs are repeated to measure their time
 
 struct OutOfTime : NumericalFailure {
   using NumericalFailure::NumericalFailure;
 };
 
-// Runs to the end. Throws OutOfTime at the limit of CPU time.
+// Runs to the end. Throws OutOfTime if that takes more than `cpu_limit` seconds of CPU time.
 RunResult run_within(const System& system, const State& initial, const SimulationOptions& options, double cpu_limit) {
   const double start = thread_cpu_seconds();
   Simulation simulation(system, initial, options);
@@ -88,17 +88,17 @@ private:
                            "references may do.");
   }
 
-  // Settings of one integrator, from the coarsest on.
+  // Settings of one integrator, from the coarsest to the finest, and the results so far.
   struct Climb {
     std::vector<std::size_t> rungs; ///< indices in AccuracyOptions::ladder
     std::size_t next = 0;
-    double last_cost = 0.0, last_value = 0.0; ///< CPU time of all runs of the last setting, s, and its value
+    double last_cost = 0.0, last_value = 0.0; ///< CPU time of all runs at the last setting, s, and its tolerance or step
 
     [[nodiscard]] bool is_over() const { return next == rungs.size(); }
   };
 
-  // Returns the predicted CPU time of the next setting, s: proportional to 1/step or tolerance^(−k_cost_power). It is 0 for the first
-  // setting, so that every integrator is measured once.
+  // Returns the predicted CPU time of the next setting, s, proportional to 1/step or tolerance^(−k_cost_power). The prediction is 0 for the
+  // first setting, so that every integrator is measured at least once.
   [[nodiscard]] double predicted(const Climb& climb) const {
     const MethodSetting& setting = options_.ladder[climb.rungs[climb.next]];
     if (climb.last_cost == 0.0) return 0.0;
@@ -123,7 +123,7 @@ private:
     return list;
   }
 
-  // Runs the setting with the least predicted cost first, so that the budget covers as many settings as possible.
+  // Runs the settings of all integrators, always the one with the least predicted cost next, so that the budget covers as many as possible.
   void climb() {
     study_.budget = options_.budget;
     study_.entries.resize(options_.ladder.size());
@@ -215,7 +215,7 @@ struct Point {
   double value, error;
 };
 
-// Fits log error = slope · log value + constant by least squares.
+// Returns the least-squares fit of log error = slope · log value + constant.
 ErrorSlope fitted(const std::string& integrator, const std::vector<Point>& points) {
   double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, low = INFINITY, high = -INFINITY;
   for (const Point& p : points) {
@@ -300,7 +300,7 @@ std::vector<MethodSetting> usual_ladder(const System& system, const std::vector<
   std::vector<MethodSetting> ladder;
   for (const std::string& name : names) {
     if (is_adaptive(system, name)) {
-      for (int digits = 3; digits <= 12; ++digits) // parsed from text, so that 0.001 is the nearest double to 1e-3
+      for (int digits = 3; digits <= 12; ++digits) // parsed from text, for the double nearest to the decimal number
         ladder.push_back({name, std::stod("1e-" + std::to_string(digits)), false});
     } else {
       for (double h = 8.0 * step; h > 0.1 * step; h *= 0.5) ladder.push_back({name, h, true});

@@ -1,15 +1,15 @@
-// Accuracy of integrators against their cost. Every setting of a list (integrator with a tolerance or a step) is run and compared with a
-// reference.
+// Measures the accuracy of integrators against their cost. Each entry of a list of settings (integrator with a tolerance or a step) is run
+// and compared with a reference.
 //
-// The reference comes from two independent methods at a tight tolerance. The difference between these two is the resolution: smaller errors
-// of an entry cannot be measured. A kind of error (positions, velocities, reactions, event times) on which the two differ by more than
-// k_agreement is not reported. If they differ by more in positions, there is no reference and the study fails.
+// The reference is computed by two independent methods at a tight tolerance. The difference of the two is the resolution: smaller errors of
+// an entry cannot be measured. A kind of error (positions, velocities, reactions, event times) for which they differ by more than
+// k_agreement is not reported. If they differ by more than that in positions, there is no reference and the study fails.
 //
-// Settings are run within a budget of CPU time, the cheapest first by a prediction from the runs before. Settings that exceed the budget
-// are left out, and the table says so.
+// Entries are run within a budget of CPU time, those with the least predicted cost first. Entries that exceed the budget are left out,
+// which the table shows.
 //
-// The cost is the CPU time of one thread in a run without samples, the least of several runs. The error comes from a further run with
-// samples; samples are interpolated, so both take the same steps.
+// The cost is the CPU time of one thread for a run without samples, the least of several runs. The error comes from another run with
+// samples. Samples are interpolated, so both runs take the same steps.
 #pragma once
 
 #include "mbd/trust/run_comparison.h"
@@ -22,7 +22,7 @@
 
 namespace steplap {
 
-/// Integrator with its tolerance, or with its step if it does not control the step itself.
+/// An integrator with its tolerance, or with its step if it has fixed steps.
 struct MethodSetting {
   std::string integrator;
   double value = 0.0;
@@ -36,12 +36,12 @@ struct MethodSetting {
 struct AccuracyOptions {
   std::vector<MethodSetting> ladder;
   MethodSetting first_reference{"dop853", 1e-13}, second_reference{"tsit5", 1e-13};
-  int repeats = 3;         ///< most repetitions of a run for its time; long runs are repeated less often
+  int repeats = 3;         ///< largest number of repetitions of a run to measure its time; long runs are repeated less often
   double cpu_limit = 60.0; ///< CPU time of one run, s; a longer run is stopped and reported as failed
-  /// CPU time for the whole list, s; the references are run first and are not counted.
+  /// CPU time for the whole list, s. The references are run first and are not counted.
   double budget = std::numeric_limits<double>::infinity();
   EventFilter is_event_counted;                          ///< empty: all events
-  std::function<void(const std::string& text)> progress; ///< called with a text before each run, if set
+  std::function<void(const std::string& text)> progress; ///< called before each run with a text about it, if set
 };
 
 struct AccuracyEntry {
@@ -53,10 +53,10 @@ struct AccuracyEntry {
   RunDifference error;
   double energy_residual = 0.0;     ///< residual of the energy balance over the energy exchanged
   double constraint_residual = 0.0; ///< m or rad, before projection
-  bool is_pareto = false;           ///< no other entry is both cheaper and more accurate
+  bool is_pareto = false;           ///< no other entry is both cheaper and more accurate (Pareto-optimal)
 };
 
-/// Power law error ~ value^slope fitted to the results of one integrator, over `decades` of its tolerance or step.
+/// Power law error ~ value^slope, fitted to the results of one integrator whose tolerances or steps span `decades` powers of ten.
 struct ErrorSlope {
   std::string integrator;
   double slope = 0.0, decades = 0.0;
@@ -65,12 +65,12 @@ struct ErrorSlope {
 
 struct AccuracyStudy {
   std::vector<AccuracyEntry> entries;
-  RunDifference resolution; ///< between the two references
+  RunDifference resolution; ///< difference between the two references
   MethodSetting first_reference, second_reference;
-  double budget = 0.0, spent = 0.0; ///< CPU time for the list: granted and used, s
+  double budget = 0.0, spent = 0.0; ///< CPU time allowed for the list, and used by it, s
 
   [[nodiscard]] bool is_resolved(ErrorKind kind) const;
-  /// Returns the largest error of the entry among the resolved kinds, at least the resolution.
+  /// Returns the largest error of an entry over the resolved kinds, but at least the resolution.
   [[nodiscard]] double error_of(const AccuracyEntry& entry) const;
   /// Returns the entry with the least cost whose error is at most `wanted`; null if there is none.
   [[nodiscard]] const AccuracyEntry* cheapest(double wanted) const;

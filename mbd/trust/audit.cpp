@@ -24,12 +24,12 @@ const char* const k_unknown = ".unknown";
 const char* const k_forces = "forces";
 const char* const k_velocities = "velocities";
 const char* const k_places = "places";
-constexpr double k_one_line = 1e-9; // relative to the size of the bodies, and rad: lines within it are the same line
+constexpr double k_one_line = 1e-9; // relative to the size of the bodies, and rad: lines that differ by less are the same line
 
-constexpr double k_no_bound = 1e20; // N or N m: larger bounds count as infinite, as for a one-way clutch; its actual force is used instead
+constexpr double k_no_bound = 1e20; // N or N m: larger bounds count as infinite (one-way clutch), and the present force replaces them
 
-// Returns the power that friction can appear to produce by rounding of velocities alone, W: Σ (largest possible force · accuracy of the
-// rate).
+// Returns a bound of the power that friction appears to produce because velocities are rounded, W: Σ (largest possible force · accuracy of
+// the rate).
 double power_of_rounding(const Snapshot& s, const System& system, std::size_t f, double met) {
   const FrictionUnit& unit = system.frictions[f];
   const FrictionState& state = s.evaluation->friction[f];
@@ -66,8 +66,8 @@ double power_of_friction(const Snapshot& s, const System& system, std::size_t f)
   return most > k_no_bound * size ? power : most;
 }
 
-// Returns the power of friction, W, reduced by rounding if it is positive. Negative power is returned unchanged, because audited_power()
-// needs the dissipation.
+// Returns the power of a friction element, W. A positive power is reduced by the part that rounding explains. A negative power is returned
+// unchanged, because audited_power() needs it.
 double pushing_power(const Snapshot& s, const System& system, std::size_t f, double met) {
   const FrictionPhase phase = s.evaluation->friction[f].phase;
   if (phase == FrictionPhase::free || phase == FrictionPhase::apart) return 0.0;
@@ -80,14 +80,14 @@ double overload_of(const Snapshot& s, const System& system, std::size_t f) {
   const FrictionState& state = s.evaluation->friction[f];
   const double* wrench = s.friction_force + unit.row;
   const int n = unit.friction->dimension();
-  // A step-lap joint knows its admissible set only while it sticks. While it slides, its wrench lies on the boundary by construction.
+  // A step-lap joint knows its admissible set only while it sticks. While it slides, its slip law gives wrenches on the boundary.
   if (unit.friction->never_slips() || (n > 1 && state.phase == FrictionPhase::slip)) return 0.0;
   const bool is_bearing = std::any_of(wrench, wrench + n, [](double w) { return w != 0.0; });
   if (!is_bearing) return -1.0;
   if (state.phase == FrictionPhase::apart) return INFINITY;
-  // In one dimension `against` is opposed to the force, so that one-way elements use the bound of the loaded side.
+  // `against` is a rate opposed to the force, for which support() returns the bound on the side of the force.
   double normal[3], against[3] = {n == 1 && wrench[0] > 0.0 ? -1.0 : 1.0, 0.0, 0.0};
-  // No bound: the force must be rounding.
+  // If that bound is zero, the force must be negligible.
   if (!(unit.friction->support(*s.evaluation, state, against) > 0.0))
     return n == 1 ? std::abs(wrench[0]) / slight_force(system, *unit.friction->rows(state)) - 1.0 : 0.0;
   return unit.friction->gauge(*s.evaluation, state, wrench, normal) - 1.0;
@@ -99,7 +99,7 @@ bool may_turn(const FrictionUnit& unit) {
   return unit.friction->dimension() == 3 && unit.friction->is_rigid() && !unit.friction->never_slips();
 }
 
-// Returns the change of friction forces if the slip velocity changes by `rate`, N.
+// Returns the change of all such friction forces, N, if the slip velocities change by `rate`, m/s.
 double turned_force(const Snapshot& s, const System& system, double rate) {
   double sum = 0.0;
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
@@ -175,7 +175,7 @@ double borne_together(const Snapshot& s, const System& system, const std::vector
   return sum;
 }
 
-// Adds a `shares` channel for each element of such a group, and one channel with the sum of their forces.
+// Adds a `shares` channel for each element of such a group, and a channel with the sum of their forces.
 void add_shared_channels(System& system) {
   const System* const self = &system;
   for (const std::vector<std::size_t>& group : frictions_on_one_line(system)) {
@@ -194,7 +194,7 @@ void add_shared_channels(System& system) {
 void keep_worst(std::vector<AuditFinding>& list, const AuditFinding& finding) {
   for (AuditFinding& known : list) {
     if (known.what != finding.what) continue;
-    if (!(finding.ratio() <= known.ratio())) known = finding; // also what is no number
+    if (!(finding.ratio() <= known.ratio())) known = finding; // also if the ratio is not a number
     return;
   }
   list.push_back(finding);
@@ -237,7 +237,7 @@ bool may_pull(const Model& model) {
 
 } // namespace
 
-// The channels are compared sample by sample; they need no extremes.
+// Adds the `unknown` channels. They are read sample by sample and have no extremes.
 void add_unknown_channels(System& system, double met) {
   const auto scratch = std::make_shared<std::vector<PairJacobian>>();
   const System* const self = &system;
@@ -340,7 +340,7 @@ private:
   std::vector<int> parent_;
 };
 
-// Returns the bodies that an element names, directly or by markers. An element with a single marker (a load) acts from the ground.
+// Returns the bodies that an element names, directly or by markers, and the ground if it names a single marker (a load).
 std::vector<int> bodies_of(const ElementEntry& entry, const std::map<std::string, int>& body_index,
                            const std::map<std::string, int>& marker_body) {
   std::vector<int> bodies;
@@ -382,8 +382,9 @@ std::vector<std::vector<int>> free_groups(const Model& model, const System& syst
 
 namespace {
 
-// Momentum minus the impulse of gravity, and angular momentum about the group's centre of gravity. The sums of the absolute values of the
-// single bodies are the scale. If all velocities have the same rounding error ε, the momentum errors are `mass` ε and `moment` ε.
+// Momentum minus the impulse of gravity, and angular momentum about the group's centre of gravity, of one group. `size` and `turn_size` are
+// the sums of absolute values over the bodies, as scales. If all velocities have a rounding error ε, the errors are `mass` ε and `moment`
+// ε.
 struct Momentum {
   double x = 0.0, y = 0.0, turn = 0.0, size = 0.0, turn_size = 0.0;
   double mass = 0.0, moment = 0.0; ///< kg, kg m

@@ -18,54 +18,56 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_nudge = 1e-9;           // size of a nudge over that of the body
-constexpr double k_above_rounding = 1e4;   // least size of a nudge, in roundings of the body's position
-constexpr double k_least_part = 1e-3;      // share of a nudge; if constraints leave less of it, they hold the body
-constexpr double k_least_fastest = 0.3;    // least part of the nudge along the fastest growing direction
-constexpr double k_least_share = 0.5;      // share of the mean rate that counts; slower growth at an instant counts as 0
-constexpr double k_visible_exponent = 0.2; // growth by 22 %, far above the rounding of a nudge; smaller exponents are not confirmed by runs
-constexpr double k_confirmed = 0.5; // share of the exponent that two runs must confirm: instants are few, and the growing direction turns
-// Test for exponential growth in one run. An exponential takes about as long from 1 to 100 as from 100 to 1e4. A body that falls or slides
-// off takes ten times as long, one that drifts evenly a hundred times. So the second time may be at most k_slower times the first.
+constexpr double k_nudge = 1e-9;           // size of a nudge, relative to the radius of gyration of the body
+constexpr double k_above_rounding = 1e4;   // least size of a nudge, in rounding errors of the body's position
+constexpr double k_least_part = 1e-3;      // fraction of a nudge; if constraints permit only a smaller part of it, they hold the body
+constexpr double k_least_fastest = 0.3;    // least component of the nudge along the fastest growing direction, in nudge sizes
+constexpr double k_least_share = 0.5;      // fraction of the mean rate required; slower growth at an instant counts as 0
+constexpr double k_visible_exponent = 0.2; // growth by 22 %, far above rounding; a smaller predicted exponent is not confirmed by runs
+constexpr double k_confirmed = 0.5; // fraction of the exponent that runs must confirm: instants are few, and the growing direction rotates
+// Test for exponential growth in one run. Exponential growth takes about as long from 1 to 100 as from 100 to 1e4. The displacement of a
+// body that falls or slides takes ten times as long, that of a body which drifts evenly a hundred times. The second time may therefore be
+// at most k_slower times the first.
 constexpr double k_begun = 2.0, k_half_way = 100.0;
 constexpr double k_slower = 5.0;
-// Growth beyond k_suspicious in one run is examined again in the difference of two runs, which does not contain the motion itself. In that
-// difference a growth by 16 distinguishes exponentials from powers of time up to t⁵ by the last two doublings: for an exponential they take
-// equally long, or the last one less (growth from rest); for t⁵ the last one takes 1.07 times as long or longer.
+// Growth beyond k_suspicious in one run is examined again in the difference of two runs, in which the motion itself cancels. In that
+// difference a growth by k_seen distinguishes exponentials from powers of time up to t⁵, by the last two doublings. For an exponential they
+// take equally long, or the last one less (growth from rest); for t⁵ the last one takes at least 1.07 times as long.
 constexpr double k_suspicious = 5.0, k_seen = 16.0, k_even_doublings = 1.03;
 constexpr int k_parts_of_step = 8;
-constexpr double k_least_steps = 100.0; // in the leg, so that doublings are resolved
-constexpr double k_swing_step = 0.5;    // rad of phase per step; methods of fourth order or more have errors of 1e-4 then
+constexpr double k_least_steps = 100.0; // number of steps in the leg, so that doublings are resolved
+constexpr double k_swing_step = 0.5;    // phase of the oscillation per step, rad; methods of order 4 or more have errors of 1e-4 then
 constexpr int k_least_samples = 6;      // in the last two doublings
-// A direction may move late in a leg because rounding grew along it. Constraints are met to about 1e-9 of a body's size; at an exponent of
-// 6 or more, growth by rounding is visible (k_moved). Motion earlier than the share k_early of the leg is part of the model.
+// A direction may start to move late in a leg because rounding errors grew along it. Constraints are met to about 1e-9 of a body's size;
+// growth of this by an exponent of 6 or more is visible (k_moved). Motion that starts before the fraction k_early of the leg belongs to the
+// model.
 constexpr double k_by_rounding = 6.0, k_early = 0.05;
-// Least number of instants with growth in a leg in motion; a single one may lie within an impact.
+// Least number of instants with growth if the leg is in motion; a single one may lie within an impact.
 constexpr int k_least_instants = 3;
 // Largest number of coordinates for which the stiffness is analysed. The algebra is dense; the cost of an instant grows with the cube of
 // the number.
 constexpr int k_most_coordinates = 300;
 constexpr double k_dense_work = 3e8; // limit on (coordinates)³ · instants in a leg
 constexpr int k_most_instants = 32;
-constexpr int k_steady_instants = 2;         // instants in a steady leg, in which only loads change
-constexpr std::size_t k_most_stretches = 32; // most stretches between breakpoints of loads that are examined separately
+constexpr int k_steady_instants = 2;         // number of instants in a leg of steady motion, in which only loads change
+constexpr std::size_t k_most_stretches = 32; // largest number of intervals between breakpoints of loads that are examined separately
 
-// Growth over a leg according to its stiffness.
+// Growth of small displacements over a leg, as its stiffness predicts.
 struct LegGrowth {
   double exponent = 0.0; ///< ∫ rate dt
   double rate = 0.0;     ///< largest rate, 1/s
-  VecX shape;            ///< its displacement, W δ
-  double swing = 0.0;    ///< its angular frequency if it oscillates, rad/s (FrozenGrowth)
+  VecX shape;            ///< displacement that grows fastest, as W δ (square roots of masses times displacements)
+  double swing = 0.0;    ///< angular frequency of that displacement if it oscillates, rad/s (FrozenGrowth)
   int growing = 0;       ///< number of instants with growth
 };
 
-// Instant of a leg at which growth is calculated, with the part of the duration for which it counts.
+// An instant of a leg at which the growth rate is computed, and the part of the leg's duration that it represents.
 struct Instant {
   State state;
   double duration; ///< s
 };
 
-// Returns instants in a leg at rest, in which only loads change: the middle of equal parts of the stretches between breakpoints of loads.
+// Returns instants in a leg at rest, in which only loads change: the middles of equal parts of the intervals between breakpoints of loads.
 std::vector<Instant> instants_at_rest(const System& system, const LegMotion& leg, int count) {
   std::vector<double> edges = {leg.begin.t};
   for (const double t : system.breakpoints)
@@ -83,7 +85,7 @@ std::vector<Instant> instants_at_rest(const System& system, const LegMotion& leg
   return instants;
 }
 
-// Returns recorded states of a leg in motion. Each counts for the time up to half-way to its neighbours.
+// Returns recorded states of a leg in motion. Each represents the time until half-way to its neighbours.
 std::vector<Instant> instants_in_motion(const LegMotion& leg, int count) {
   std::vector<const State*> states = {&leg.begin};
   const std::size_t stride = std::max<std::size_t>(1, leg.states.size() / static_cast<std::size_t>(std::max(count, 1)));
@@ -125,7 +127,7 @@ std::vector<double> nudges_of(const System& system, const State& begin) {
   return nudges;
 }
 
-// Returns the displacement of each body, m; angles are multiplied by the radius of gyration. `weighted`: W δ.
+// Returns the size of each body's displacement, m; rotations are multiplied by the radius of gyration. `weighted` is W δ.
 std::vector<double> ways_of(const System& system, const VecX& weighted) {
   std::vector<double> ways;
   for (std::size_t body = 1; body < system.bodies.size(); ++body) {
@@ -135,7 +137,7 @@ std::vector<double> ways_of(const System& system, const VecX& weighted) {
   return ways;
 }
 
-// Returns the largest ratio of displacement to nudge size over all bodies.
+// Returns the largest ratio of a body's displacement to its nudge size.
 double largest_share(const std::vector<double>& ways, const std::vector<double>& nudges) {
   double share = 0.0;
   for (std::size_t i = 0; i < ways.size(); ++i)
@@ -144,7 +146,7 @@ double largest_share(const std::vector<double>& ways, const std::vector<double>&
 }
 
 // Returns a pseudo-random displacement W δ. It depends only on the model and the leg, so results are reproducible. Each component has a
-// random sign and between half and the whole nudge size, so that every mode has a part in it.
+// random sign and a size between half the nudge size and the whole, so that every mode is excited.
 VecX random_nudge(const System& system, std::size_t leg, const std::vector<double>& nudges) {
   Fingerprint machine;
   for (const BodyData& body : system.bodies) {
@@ -167,7 +169,7 @@ VecX beyond(const MotionSpan& moved, const VecX& weighted) {
   return Eigen::Map<const VecX>(parts.data(), weighted.size());
 }
 
-// A run whose pose is displaced by a nudge at the start of one leg. It stops with an exception beyond `most_evaluations`.
+// Repeats a run with a displacement (nudge) at the start of one leg. Throws an exception beyond `most_evaluations`.
 class NudgedRun {
 public:
   NudgedRun(const System& system, const State& initial, const SimulationOptions& options, double most_evaluations, const LegMotion& leg)
@@ -184,7 +186,7 @@ public:
     simulation_.displace(by);
     now_ = before_ = simulation_.current_state();
   }
-  // Makes one step. Returns false if the leg is over.
+  // Makes one step. Returns false if the leg has ended.
   bool advance() {
     if (is_over_) return false;
     before_ = std::move(now_);
@@ -212,7 +214,7 @@ private:
   bool step() {
     const bool goes_on = simulation_.advance();
     const double t = simulation_.state().t;
-    if (progress_) progress_(t); // throws if the run is to be aborted
+    if (progress_) progress_(t); // throws if the user stops the computation
     if (evaluations() > most_evaluations_)
       throw EvaluationBudgetExceeded("aborted after " + number_text(most_evaluations_) + " evaluations, at t = " + number_text(t) +
                                      " s of a run from nudged poses");
@@ -227,19 +229,20 @@ private:
   bool is_over_ = false;
 };
 
-// Growth of one body's displacement and the times at which it passed the marks.
+// Growth of one body's displacement, and the times at which it passed k_begun and k_half_way.
 struct Growth {
   double from = 0.0, now = 0.0; // initial displacement, m; present one over the initial one
   double t_begun = 0.0, t_half_way = 0.0;
 };
 
-// Returns the time at which growth passed `mark`, by linear interpolation within a step. Linear, because growth over a long step need not
-// be exponential.
+// Returns the time at which the growth passed `mark`, by interpolation within a step. This is linear, because the growth over a long step
+// need not be exponential.
 double passed(double mark, double t0, double grown0, double t1, double grown1) {
   return grown1 > grown0 ? t0 + (t1 - t0) * (mark - grown0) / (grown1 - grown0) : t1;
 }
 
-// Returns true if the displacement has passed k_far_grown_nudge as fast as an exponential would.
+// Updates the growth by one step from t0 to t1, at whose end the displacement is `way`. Returns true if the displacement has just passed
+// k_far_grown_nudge and has grown as fast as an exponential.
 bool goes_off(Growth& g, double way, double t0, double t1) {
   const double before = g.now;
   g.now = way / g.from;
@@ -251,10 +254,10 @@ bool goes_off(Growth& g, double way, double t0, double t1) {
   return t_far - g.t_half_way <= k_slower * (g.t_half_way - g.t_begun);
 }
 
-// Returns the exponent x of growth from rest, cosh x = `grown`.
+// Returns x with cosh x = `grown`, the exponent of exponential growth that starts at rest.
 double exponent_of(double grown) { return std::numbers::ln10 * portable::log10(grown + std::sqrt((grown - 1.0) * (grown + 1.0))); }
 
-// Tests one leg of a run by nudges.
+// Tests one leg of a run by runs from displaced poses.
 class NudgedLeg {
 public:
   NudgedLeg(const System& system, const State& initial, const SimulationOptions& options, const LegMotion& leg, double most_evaluations)
@@ -265,7 +268,7 @@ public:
     options_.end = std::min(options_.end, leg.end);
   }
 
-  // Sets the nudge along the free directions, with a part along `shape` unless that is empty.
+  // Sets the nudge, along directions that are free. It gets a component along `shape`, unless that is empty.
   void choose_nudge(const FrozenLeg* frozen, const VecX& shape) {
     nudge_ = random_nudge(system_, leg_.past_legs, nudges_);
     nudge_ = frozen ? frozen->along_directions(nudge_) : beyond(leg_.moved, nudge_);
@@ -278,7 +281,7 @@ public:
     }
   }
 
-  // Returns true if half the difference of the two runs from the nudge and its mirror image grows along `shape` as `course` predicts.
+  // Returns true if half the difference of two runs, from the nudge and from its mirror image, grows along `shape` as `course` predicts.
   bool confirms(const LegGrowth& course) {
     if (course.swing > 0.0) limit_steps(k_swing_step / course.swing);
     NudgedRun plus = nudged(1.0), minus = nudged(-1.0);
@@ -299,7 +302,8 @@ public:
     return exponent_of(grown) > k_confirmed * course.exponent;
   }
 
-  // Looks for growth that the stiffness does not show. Returns its rate, 1/s, and the displacement W δ; nothing if there is none.
+  // Searches for growth that the stiffness does not show, in one run. Returns its rate, 1/s, and the displacement W δ; nothing if there is
+  // none.
   std::optional<std::pair<double, VecX>> goes_off_otherwise() {
     NudgedRun run = nudged(1.0);
     if (!run.reach_leg()) return {};
@@ -330,7 +334,8 @@ public:
   }
 
 private:
-  // Looks for exponential growth in half the difference of the runs from the nudge and its mirror image, over the whole leg.
+  // Searches for exponential growth over the whole leg in half the difference of two runs, from the nudge and from its mirror image.
+  // Returns its rate, 1/s, and the displacement W δ.
   std::optional<std::pair<double, VecX>> grows_evenly() {
     limit_steps((leg_.end - leg_.begin.t) / k_least_steps);
     NudgedRun plus = nudged(1.0), minus = nudged(-1.0);
@@ -368,17 +373,17 @@ private:
     if (!is_found) return {};
     return std::pair{rate, VecX(beyond(leg_.moved, difference(plus, minus)))};
   }
-  // Limits the steps. Nudges are smaller than the tolerance, so error control ignores them: in a leg at rest or in even motion, explicit
-  // methods would take steps at their limit of stability and implicit ones would damp oscillations.
+  // Limits the step. Nudges are smaller than the tolerance, so error control ignores them. In a leg at rest or in even motion, explicit
+  // methods would then take steps at their limit of stability, and implicit ones would damp oscillations.
   void limit_steps(double most) {
     double& limit = options_.settings.max_step;
     limit = limit > 0.0 ? std::min(limit, most) : most;
   }
-  // Returns the growth rate over the last two doublings, 1/s; 0 if they are not exponential.
+  // Returns the growth rate over the last two doublings, 1/s; 0 if the growth is not exponential.
   static double last_rate(const std::vector<double>& times, const std::vector<double>& way) {
     std::size_t i = way.size() - 1;
     const double end = way.back(), t_end = times.back();
-    const auto last_below = [&](double mark) { // time at which the displacement was last below it, interpolated exponentially
+    const auto last_below = [&](double mark) { // last time at which the displacement was below `mark`, by exponential interpolation
       while (i > 0 && way[i] > mark) --i;
       if (!(way[i] > 0.0) || !(way[i] < way[i + 1])) return times[i];
       return times[i] + (times[i + 1] - times[i]) * portable::log10(mark / way[i]) / portable::log10(way[i + 1] / way[i]);
@@ -396,7 +401,8 @@ private:
                         : 0.0);
     return all;
   }
-  // In the first leg the run starts from the displaced pose, so that modes of contacts and friction are determined there.
+  // Returns a run of the leg. For the first leg the run starts from the displaced pose, so that modes of contacts and friction are
+  // determined there.
   [[nodiscard]] NudgedRun nudged(double sign) const {
     State start = initial_;
     if (leg_.past_legs == 0) {
@@ -437,7 +443,7 @@ private:
   VecX nudge_;                 ///< W δ
 };
 
-// Returns the body that `shape` displaces most relative to its size, with the kind of displacement.
+// Returns the result for a displacement: the body that it moves most, relative to the body's size, and whether the body moves or rotates.
 Balance balance_by(const System& system, const LegMotion& leg, const VecX& shape, double rate) {
   const std::vector<double> ways = ways_of(system, shape), nudges = nudges_of(system, leg.begin);
   std::size_t most = 0;
@@ -451,7 +457,7 @@ Balance balance_by(const System& system, const LegMotion& leg, const VecX& shape
   return found;
 }
 
-// Marks the bodies on which units of the named element act; all bodies if the name has no unit with modes.
+// Returns flags of the bodies on which units of the named element act; all bodies if no unit has this name.
 std::vector<char> bodies_of(const System& system, const std::string& element) {
   std::vector<char> is_used(system.bodies.size(), 0);
   bool is_found = false;
@@ -468,7 +474,7 @@ std::vector<char> bodies_of(const System& system, const std::string& element) {
   return is_used;
 }
 
-// Returns true if the leg has no events on bodies that the free directions move. Actions and kinks do not count.
+// Returns true if no body that the free directions move has an event in the leg. Actions and kinks do not count.
 bool is_without_events(const System& system, const RunResult& run, const LegMotion& leg, const FrozenLeg& frozen) {
   return std::none_of(run.events.begin(), run.events.end(), [&](const Event& event) {
     if (event.t < leg.begin.t || event.t > leg.end || event.kind == EventKind::happens || is_kink(event.kind)) return false;
@@ -479,7 +485,7 @@ bool is_without_events(const System& system, const RunResult& run, const LegMoti
   });
 }
 
-// Tests legs of one run for unstable equilibria.
+// Tests legs of one run, one at a time, for unstable equilibria.
 struct ExaminedLeg {
   const System& system; ///< system of the run
   const State& initial; ///< initial state of the run
@@ -488,7 +494,7 @@ struct ExaminedLeg {
   double most_evaluations;
 
   [[nodiscard]] const System& own_system(const LegMotion& leg) const { return leg.system ? *leg.system : system; }
-  // Returns the number of instants for which dense algebra is affordable.
+  // Returns the number of instants for which the cost of dense algebra is acceptable.
   [[nodiscard]] int instants() const {
     const double coordinates = 3.0 * (system.body_count() - 1);
     return static_cast<int>(
@@ -507,7 +513,8 @@ struct ExaminedLeg {
   [[nodiscard]] std::optional<Balance> of(const LegMotion& leg) const;
 };
 
-// Tests whether the growth by `growth_at` at the instants `looks` exceeds `least_exponent` over the leg, and confirms it by nudged runs.
+// Returns an unstable equilibrium if the growth at the instants `looks` amounts to an exponent above `least_exponent` over the leg, and if
+// runs from displaced poses confirm it. `growth_at` computes the growth rate at a state.
 std::optional<Balance> ExaminedLeg::by_growth(const FrozenLeg& frozen, const GrowthAt& growth_at, const LegMotion& leg,
                                               const std::vector<Instant>& looks, double least_exponent) const {
   const LegGrowth course = growth_over_leg(growth_at, looks);
@@ -547,8 +554,8 @@ bool grows_at(FrozenLeg& frozen, const State& state, double least) {
   return frozen.is_steady() && frozen.steady_growth_at(state, least).rate > 0.0;
 }
 
-// Tests equilibria that rounding ended during the leg. For each direction that moved late, the part of the leg before its first motion is
-// tested as a separate leg in which that direction did not move.
+// Finds equilibria that ended during the leg because rounding errors grew. For each direction that started to move late, the time before is
+// tested like a leg in which this direction did not move.
 std::optional<Balance> ExaminedLeg::until_it_fell(const LegMotion& leg) const {
   const double duration = leg.end - leg.begin.t;
   double last = -std::numeric_limits<double>::infinity();

@@ -16,7 +16,8 @@ struct Worst {
   const Channel* channel = nullptr;
 };
 
-// Returns how far a value is beyond its limits; negative inside, then minus the distance to the nearest limit.
+// Returns how far a value exceeds its limits, in its unit. Within the limits the result is negative: minus the distance to the nearest
+// limit.
 double excess(const Criterion& c, double value) {
   double worst = -std::numeric_limits<double>::infinity();
   if (c.within) worst = std::abs(value) - *c.within;
@@ -32,7 +33,7 @@ double limit_for(const Criterion& c, double value) {
   return value - *c.at_most > *c.at_least - value ? *c.at_most : *c.at_least;
 }
 
-// Returns the extreme furthest beyond the limits or nearest to them; empty if a channel has no value.
+// Returns the extreme that exceeds the limits most, or comes nearest to them; nothing if a channel has no value.
 std::optional<Worst> worst_extreme(const Criterion& c, const std::vector<ChannelRange>& ranges) {
   std::optional<Worst> worst;
   bool is_complete = true;

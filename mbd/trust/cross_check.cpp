@@ -21,25 +21,27 @@ namespace {
 constexpr double k_floor = 1e-7, k_reaction_floor = 1e-6, k_time_floor = 1e-6;
 constexpr double k_integral_floor = 1e-6;
 constexpr double k_energy_allowed = 1e-5;        // largest residual of energy over the energy exchanged, adaptive runs
-constexpr double k_stepped_energy_allowed = 0.2; // the same for fixed steps, which damp
-// Shares of the run's own powers and forces that a violation may reach, for adaptive and for fixed steps.
+constexpr double k_stepped_energy_allowed = 0.2; // largest residual for fixed steps, which damp
+// Largest violation of a law, as a fraction of the run's own powers and forces, for adaptive methods and for fixed steps.
 constexpr double k_law_share = 1e-6, k_stepped_law_share = 1e-2;
-// Share of the residual or violation at twice the step; below it the violation shrinks with the step.
+// Ratio of a residual or violation to that at twice the step, below which it counts as decreasing with the step.
 constexpr double k_shrinking = 0.8;
-// Number of consecutive samples: forces of time stepping are averages over a step, so single samples do not count.
+// Number of consecutive samples in which a difference must occur. In time stepping forces are averages over a step, so single samples do
+// not count.
 constexpr int k_persistent = 4;
 constexpr double k_brief_steps = 20.0; // a change that is reversed within so many fixed steps is not missed
-constexpr double k_own_doubt = 1e-3;   // own error of an adaptive method above which it is questioned
+constexpr double k_own_doubt = 1e-3;   // own error of an adaptive method above which it is reported
 constexpr double k_momentum_allowed = 1e-6;
-constexpr double k_rest_share = 1e-9; // share of the bodies' size: smaller position errors count as rest (run_comparison.cpp)
-// Rest limit over tolerance · size of the bodies: 100 · 1e-3, because errors are absolute to 1e-3 of the size (Integrator).
+constexpr double k_rest_share = 1e-9; // fraction of the bodies' size: smaller position errors count as rest (run_comparison.cpp)
+// Position error that counts as rest, over tolerance times the size of the bodies: 100 · 1e-3, because errors are controlled to 1e-3 of the
+// size (Integrator).
 constexpr double k_rest_errors = 0.1;
 constexpr long k_steps_between_checks = 8; // limits are checked every so many steps, since a step of time stepping may take milliseconds
-constexpr double k_closer = 0.25;          // factor on steps and sample spacing of a repetition
+constexpr double k_closer = 0.25;          // factor on steps and sample spacing in a repetition
 
-constexpr double k_moreau_steps = 2000, k_rk4_steps = 4000; // steps of the coarsest level over the whole run
+constexpr double k_moreau_steps = 2000, k_rk4_steps = 4000; // number of steps of the coarsest run
 
-// Runs to the end. Throws NumericalFailure beyond the limit of evaluations or of CPU time (`cpu_limit`, s).
+// Runs to the end. Throws NumericalFailure beyond the limit of evaluations, or beyond `cpu_limit` seconds of CPU time.
 RunResult run_within(const System& system, const State& initial, const SimulationOptions& options, const CrossCheckOptions& limits,
                      double cpu_limit) {
   const double start = thread_cpu_seconds();
@@ -96,7 +98,8 @@ private:
     double tolerance = 0.0; ///< tolerance of the coarsest run
   };
 
-  // Runs all settings of a method within an equal share of the time left. `methods_left` counts this method too.
+  // Runs all settings of a method within its part of the remaining CPU time. `methods_left`: number of methods still to be run, with this
+  // one.
   void run(const CrossMethod& method, double methods_left) {
     CrossRun made;
     Method levels;
@@ -126,7 +129,8 @@ private:
     if (check_.runs.back().failure.empty()) methods_.push_back(std::move(levels));
   }
 
-  // Makes the error estimates. Called after all runs, because they hold pointers to elements of check_.runs.
+  // Computes the error estimates of all methods. Must be called after all runs, because the estimates keep pointers to elements of
+  // check_.runs.
   void make_curves() {
     std::vector<Method> sound;
     for (Method& method : methods_) {
@@ -157,7 +161,7 @@ private:
   [[nodiscard]] const std::string& name_of_run(std::size_t i) { return run_of(i).setting.integrator; }
   [[nodiscard]] bool is_stepping(std::size_t i) { return method(run_of(i).setting.integrator).is_time_stepping; }
 
-  // Records a disagreement; keeps the worst of each pair of methods and each own fault, and of each method.
+  // Records a disagreement. For each pair of methods, for each kind of fault of a single method, and for each method the worst one is kept.
   void note(const Disagreement& d) {
     for (CrossRun& r : check_.runs)
       if ((r.setting.integrator == d.first || r.setting.integrator == d.second) && !(d.ratio <= r.worst.ratio)) r.worst = d;
@@ -177,7 +181,7 @@ private:
     const CrossRun& r = run_of(i);
     const double exchanged = energy_scale(system_, r.result), residual = r.result.statistics.energy_residual;
     const double allowed = (methods_[i].is_adaptive ? k_energy_allowed : k_stepped_energy_allowed) * exchanged + energy_of_rest(i);
-    // Time stepping damps. A residual that shrinks with the step is its discretisation error.
+    // In time stepping, which damps, a residual that decreases with the step is the discretisation error.
     const bool is_shrinking = !methods_[i].is_adaptive && residual < k_shrinking * methods_[i].coarser.back().statistics.energy_residual;
     // A residual that does not shrink shows that the step is too long for the model: the run is discarded.
     if (!methods_[i].is_adaptive && !is_shrinking && residual > allowed) dismiss(i);
@@ -200,7 +204,8 @@ private:
           number_text(change.value) + " of its own"});
   }
 
-  // Returns the energy residual that does not count, J: rounding, and for adaptive methods the error tolerated in steps at rest.
+  // Returns the part of the energy residual that is allowed in any case, J: rounding, and for adaptive methods the error that the tolerance
+  // permits in steps at rest.
   double energy_of_rest(std::size_t i) {
     const CrossRun& r = run_of(i);
     const RunStatistics& s = r.result.statistics;
@@ -210,13 +215,13 @@ private:
     return s.energy_rounding + k_margin * static_cast<double>(s.steps) * of_step;
   }
 
-  // Discards the run: none of its results is taken as known.
+  // Discards a run: its time until which results are known is set to zero.
   void dismiss(std::size_t i) {
     curves_[i]->distrust();
     run_of(i).known_until = 0.0;
   }
 
-  // Returns true if the same violation was clearly larger at twice the step. It then is the discretisation error.
+  // Returns true if the same violation was clearly larger at twice the step, so that it is a discretisation error.
   static bool is_smaller_than_before(const AuditFinding& now, const std::vector<AuditFinding>& before) {
     return std::any_of(before.begin(), before.end(),
                        [&](const AuditFinding& f) { return f.what == now.what && now.ratio() < k_shrinking * f.ratio(); });
@@ -238,8 +243,8 @@ private:
     }
   }
 
-  // Returns the error below which the bodies count as at rest, relative to the channel's scale. For velocities: that position error times
-  // the natural frequency of a body on the stiffest spring.
+  // Returns the error, relative to the channel's scale, below which the bodies count as at rest. For velocities it is the position error at
+  // rest times the natural frequency of a body on the stiffest spring.
   double error_of_rest(std::size_t i, ErrorKind kind, const std::string& where) {
     const auto channel =
         std::find_if(channels_.begin(), channels_.end(), [&](const ComparedChannel& c) { return c.channel->name == where; });
@@ -267,7 +272,7 @@ private:
   void compare_channels(std::size_t i, std::size_t j) {
     const MethodCurves &x = *curves_[i], &y = *curves_[j];
     const std::size_t rows = std::min(x.rows(), y.rows());
-    const double until = std::min(x.known_until(), y.known_until());     // no comparison beyond it
+    const double until = std::min(x.known_until(), y.known_until());     // time until which both runs are known
     const UnknownColumns columns = unknown_columns(*x.run().trajectory); // the same in all runs
     const auto unknown = [&](ErrorKind kind, std::size_t row) {
       const std::size_t column = kind == ErrorKind::reaction ? columns.force : (kind == ErrorKind::velocity ? columns.rate : columns.place);
@@ -277,8 +282,9 @@ private:
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const ComparedChannel& channel = channels_[c];
       const double floor = (channel.kind == ErrorKind::reaction ? k_reaction_floor : k_floor) * channel.scale;
-      // In a step in which friction reverses or a contact closes, time stepping has one force for two phases. The impulse is right, but not
-      // the force at an instant. So with time stepping a reaction must differ in k_persistent consecutive samples.
+      // In a step in which friction reverses or a contact closes, time stepping has one force for two phases: the impulse is right, but the
+      // force at an instant is not. Near events a reaction must therefore differ in k_persistent consecutive samples, if one method is time
+      // stepping.
       const bool may_be_brief = channel.kind == ErrorKind::reaction && (is_stepping(i) || is_stepping(j));
       std::array<double, k_persistent> recent{};
       for (std::size_t row = 0; row < rows && x.run().trajectory->times()[row] <= until; ++row) {
@@ -302,7 +308,7 @@ private:
     note(worst);
   }
 
-  // Compares the events that are certain in run i and missing in run j.
+  // Compares the events that are certain in run i with those of run j, and reports the missing ones.
   void compare_events(std::size_t i, std::size_t j) {
     const MethodCurves &x = *curves_[i], &y = *curves_[j];
     const double until = std::min(x.known_until(), y.known_until());
@@ -313,7 +319,7 @@ private:
     Disagreement worst{DisagreementKind::event, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
     for (const TimedEvent& event : x.events()) {
       if (!event.is_counted || !std::isfinite(event.shift) || event.t > until || event.alone < near) continue;
-      // A slip in several coordinates that passes through rest is invisible to steps that end before and after it.
+      // If a slip in several coordinates passes through rest within a step, time stepping cannot show it.
       if (event.kind == EventKind::slips_another_way && is_stepping(j)) continue;
       double distance = INFINITY, allowed = 0.0;
       bool is_doubted = false;
@@ -325,7 +331,7 @@ private:
         allowed = k_margin * (event.shift + (std::isfinite(other.shift) ? other.shift : 0.0));
       }
       if (is_doubted) continue;
-      // Ignore the event if the energy it dissipates is below the error of the energy.
+      // An event does not count if it dissipates less energy than the error of the energy.
       const double energy =
           std::max(x.friction_energy(event.element, event.t, event.lasts), y.friction_energy(event.element, event.t, event.lasts));
       const double ratio = std::min(std::min(distance, base_.end) / (allowed + near), energy / energy_allowed);
@@ -390,7 +396,7 @@ private:
   std::vector<std::unique_ptr<MethodCurves>> curves_;
 };
 
-// Returns true if a disagreement could disappear with smaller steps and denser samples.
+// Returns true if smaller steps and denser samples could remove a disagreement, because one of its methods has fixed steps.
 bool is_worth_refining(const CrossCheck& check) {
   return std::any_of(check.disagreements.begin(), check.disagreements.end(), [&](const Disagreement& d) {
     return std::any_of(check.runs.begin(), check.runs.end(), [&](const CrossRun& run) {

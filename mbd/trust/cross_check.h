@@ -43,22 +43,22 @@
 
 namespace steplap {
 
-/// Method with the settings at which it is run, from coarse to fine; each tolerance or step is a fraction of the one before.
+/// A method with the settings at which it is run, from coarse to fine. Each tolerance or step is a fraction of the one before.
 struct CrossMethod {
   std::string integrator;
   std::vector<MethodSetting> levels;
-  /// System to run instead of the one compared, or null. It has the same channels, but its steps end at other times.
+  /// System to run instead of the compared one; null: the same. It must have the same channels, but its steps end at other times.
   const System* system = nullptr;
   double longest_step = 0.0; ///< longest step, s; 0: no limit
 };
 
 struct CrossCheckOptions {
   std::vector<CrossMethod> methods; ///< empty: usual_methods()
-  double cpu_limit = 60.0;          ///< CPU time of all runs together, s; each method gets an equal part of the rest
-  long evaluation_limit = std::numeric_limits<long>::max(); ///< most evaluations of one run; independent of the speed of the computer
-  int refinements = 2;                                      ///< most repetitions with smaller fixed steps after a disagreement
+  double cpu_limit = 60.0;          ///< CPU time of all runs together, s; each method may use an equal part of what is left
+  long evaluation_limit = std::numeric_limits<long>::max(); ///< most evaluations in one run; unlike CPU time not dependent on the computer
+  int refinements = 2;                                      ///< largest number of repetitions with smaller fixed steps after a disagreement
   EventFilter is_event_counted;                             ///< selects friction events to compare; empty: all
-  /// Returns the verdict on a run as one word. If empty, verdicts are not compared.
+  /// Returns the verdict on a run as one word, to be compared between methods. If empty, verdicts are not compared.
   std::function<std::string(const RunResult& run)> verdict;
   std::function<void(const MethodSetting& level, const RunResult& run)> note_level; ///< called after every run, if set
   std::vector<std::vector<int>> free_groups;                                        ///< groups whose momentum is checked
@@ -73,39 +73,40 @@ struct Disagreement {
   std::string first, second; ///< methods; `second` is empty if the first alone violates a law
   std::string where;         ///< channel, or element and event
   double t = 0.0;
-  double ratio = 0.0; ///< difference over the allowed one; above 1 the runs disagree
+  double ratio = 0.0; ///< difference over the largest one that the estimates allow; above 1 the runs disagree
   std::string text;   ///< values as text: "0.31 rad, estimates 2e-9 and 1e-4 rad"
 };
 
 struct CrossRun {
-  MethodSetting setting;    ///< finest setting, which is compared
+  MethodSetting setting;    ///< finest setting, whose result is compared
   std::string failure;      ///< reason why a run of any setting failed; empty: all reached the end
   RunResult result;         ///< result of the finest setting
   double cpu_seconds = 0.0; ///< CPU time of all settings, s
   double estimate = 0.0;    ///< own error of positions at the end, scaled as in run_comparison.h
-  double known_until = 0.0; ///< time until which the own error is below k_vague of the motion, s
+  double known_until = 0.0; ///< time until which the estimated error of positions is below k_vague of the motion, s
   std::string verdict;
-  Disagreement worst; ///< largest ratio against any other method or a law
+  Disagreement worst; ///< the disagreement with the largest ratio, with another method or with a law
 };
 
 enum class CrossOutcome {
   agree,
-  vague, ///< no disagreement, but from some time on errors are as large as the motion
+  vague, ///< no disagreement, but at some time the errors become as large as the motion
   disagree
 };
 
 struct CrossCheck {
   std::vector<CrossRun> runs;
-  std::vector<Disagreement> disagreements; ///< entries with ratio > 1, the largest first; one for each pair of methods and each own fault
+  std::vector<Disagreement> disagreements; ///< ratio > 1, the largest first; one per pair of methods and per fault of one method
   CrossOutcome outcome = CrossOutcome::agree;
-  /// Time until which the result is known, s: the least of time stepping and the best other method; 0 if the energy of the time stepping
-  /// does not balance. Without time stepping: that of the least accurate method.
+  /// Time until which the result is known, s: the smaller of the times of time stepping and of the best other method; 0 if the energy of
+  /// time stepping does not balance. Without time stepping it is the time of the least accurate method.
   double known_until = 0.0;
   double worst_ratio = 0.0;
   int refinements = 0; ///< number of repetitions made
 };
 
-/// Safety factor on estimates. They are differences at single instants, first order near events, and good to a factor of about two.
+/// Safety factor on error estimates. They are differences at single instants, of first order near events, and reliable to a factor of about
+/// two.
 inline constexpr double k_margin = 5.0;
 inline constexpr double k_vague = 0.1;
 

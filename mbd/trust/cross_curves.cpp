@@ -12,16 +12,16 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_least_part = 1e-3; // share of the largest range of its kind, which is the scale of channels with smaller ranges
+constexpr double k_least_part = 1e-3; // fraction of the largest range of its kind, used as the scale of a channel with a smaller range
 constexpr double k_wide_part = 0.1;
-constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9; // limits of the ratio of differences of three settings
-// Largest uncertainty of an event's time that widens the comparison of samples near it, as a share of the duration. It also applies to an
-// event that another setting lacks, whose uncertainty is infinite.
+constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9; // limits for the ratio of the two differences of three runs
+// Largest uncertainty of an event's time, as a fraction of the duration, within which samples are compared with tolerance in time. It also
+// limits that of an event which another setting lacks, whose uncertainty is infinite.
 constexpr double k_doubtful_event = 0.02;
-// Shares of the largest estimate in a body or mechanism: lower bounds of its other estimates.
+// Lower bounds of estimates, as fractions of the largest estimate in the same body or mechanism.
 constexpr double k_part_of_body = 0.3, k_part_of_mechanism = 0.1;
-constexpr double k_lacking = 0.1; // share of the residual of energy, as an error of dissipated energy and work
-constexpr double k_still = 1e-3;  // share of the bodies' size; smaller motions count as none
+constexpr double k_lacking = 0.1; // fraction of the energy residual that counts as an error of dissipated energy, and of work
+constexpr double k_still = 1e-3;  // fraction of the bodies' size; smaller motions count as none
 
 std::optional<ErrorKind> kind_of(const Channel& channel, const std::set<std::string>& bodies) {
   if (is_audit_channel(channel)) return std::nullopt;
@@ -38,7 +38,7 @@ double arm_of(const Channel& channel, double size) {
   return channel.unit == "N m" ? 1.0 / size : 1.0;
 }
 
-// Returns the mechanism of each body: bodies that act on each other, not through the ground, have the same number.
+// Returns the mechanism of each body: bodies that act on each other, other than through the ground, have the same number.
 std::vector<int> mechanisms_of(const System& system) {
   std::vector<int> number(system.bodies.size());
   std::iota(number.begin(), number.end(), 0);
@@ -52,7 +52,7 @@ std::vector<int> mechanisms_of(const System& system) {
   const State start = system.initial_state();
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const RowSpec& row = system.frictions[f].friction->rows(start.friction[f])[0];
-    int before = k_ground; // all bodies of one row act on each other, even with others between them
+    int before = k_ground; // all bodies of one row belong together, also if the row has several parts
     for (const RowSpec* part = &row; part; part = part->next) {
       join(part->a, part->b);
       const int moving = part->a == k_ground ? part->b : part->a;
@@ -63,7 +63,7 @@ std::vector<int> mechanisms_of(const System& system) {
   return number;
 }
 
-// Returns the `shares` column for a channel such as "one.friction"; −1 if there is none.
+// Returns the column of the `shares` channel (audit.h) for a channel such as "one.friction"; −1 if there is none.
 int share_column(const std::vector<const Channel*>& channels, const Channel& channel) {
   const std::size_t dot = channel.name.rfind('.');
   if (dot == std::string::npos || channel.name.substr(dot) != ".friction") return -1;
@@ -72,7 +72,7 @@ int share_column(const std::vector<const Channel*>& channels, const Channel& cha
   return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
 }
 
-// Returns the weight of all bodies, or the force for `acceleration` if there is no gravity.
+// Returns the weight of all bodies, N; without gravity their mass times `acceleration`.
 double weight_of(const System& system, double acceleration) {
   double mass = 0.0;
   for (const BodyData& body : system.bodies) mass += body.mass;
@@ -95,7 +95,8 @@ double middle_range(const std::vector<const RunResult*>& runs, std::size_t colum
   return ranges.empty() ? 0.0 : ranges[ranges.size() / 2];
 }
 
-// Returns true if most runs exchange only energy of the size of rounding. Ranges are then rounding, and the size of the model is the scale.
+// Returns true if most runs exchange no more energy than rounding. The ranges of channels are then rounding, too, and scales follow from
+// the size of the model.
 bool is_at_rest(const System& system, const std::vector<const RunResult*>& runs) {
   const auto rests = [&system](const RunResult* run) {
     const RunStatistics& s = run->statistics;
@@ -104,7 +105,7 @@ bool is_at_rest(const System& system, const std::vector<const RunResult*>& runs)
   return 2 * std::count_if(runs.begin(), runs.end(), rests) > static_cast<std::ptrdiff_t>(runs.size());
 }
 
-using Key = std::tuple<std::string, EventKind, bool>; // the last: is it at t = 0?
+using Key = std::tuple<std::string, EventKind, bool>; // element, kind, and whether the event is at t = 0
 struct EventTime {
   double t = 0.0, within = 0.0; // s: Event::located_within
 };
@@ -123,7 +124,7 @@ EventTime nearest(const std::vector<EventTime>& times, double t) {
   return best;
 }
 
-// Returns the distance in time to the same event of another run; infinite if that run lacks it.
+// Returns the difference in time, s, to the same event of another run; infinite if that run lacks it.
 double shift_of(double t, const std::vector<EventTime>& times, const Times& other, const Key& key) {
   const auto found = other.find(key);
   if (found == other.end()) return INFINITY;
@@ -223,7 +224,7 @@ MethodCurves::MethodCurves(const std::vector<ComparedChannel>& channels, const s
     dissipated.push_back(std::abs(levels_[i]->statistics.dissipated - levels_[i - 1]->statistics.dissipated));
     work.push_back(std::abs(levels_[i]->statistics.work - levels_[i - 1]->statistics.work));
   }
-  // The error of the energy balance lies in dissipated energy or work; a part of the residual counts for each.
+  // The energy residual is an error of dissipated energy or of work; each gets a fraction of it.
   const double lacking = step_ > 0.0 ? k_lacking * levels_.back()->statistics.energy_residual : 0.0;
   const double in_a_step = std::max(lacking, step_ * audited_power(*levels_.back()));
   dissipated_error_ = std::max(extrapolated_error(dissipated), in_a_step);
@@ -273,7 +274,7 @@ void MethodCurves::estimate_channels() {
   std::vector<double> difference(pairs);
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     std::fill(difference.begin(), difference.end(), 0.0);
-    // Just after an event two settings may have equal reactions by chance, so the next sample is compared too.
+    // Just after an event, reactions of two settings may be equal by chance, so the next sample is compared, too.
     const std::size_t ahead = channels_[c].kind == ErrorKind::reaction ? 1 : 0;
     for (std::size_t row = 0; row < rows_; ++row) {
       const std::size_t at = std::min(row + ahead, rows_ - 1);
@@ -284,8 +285,8 @@ void MethodCurves::estimate_channels() {
                                                                 std::min(slack_[k], most_slack)));
       };
       look(INFINITY);
-      // Curves that jump in opposite directions are close to each other within the time slack of the event, even if their values differ at
-      // the same time. So with fixed steps the distance is also taken within two steps only.
+      // Two curves that jump in opposite directions are near each other within the uncertainty of the event's time, even if their values
+      // differ at the same time. With fixed steps the distance is therefore also computed with at most two steps of tolerance in time.
       if (step_ > 0.0 && ahead > 0) look(2.0 * step_);
       estimate_[c][row] = extrapolated_error(difference);
     }
@@ -294,9 +295,9 @@ void MethodCurves::estimate_channels() {
   share_estimates();
 }
 
-// Raises estimates of channels that depend on uncertain ones. If one coordinate of a body is uncertain, its other coordinates are too, and
-// partly the bodies on which it acts: a body still at rest may be hit at another time. Its own difference would be zero by chance. All
-// reactions count as one mechanism, since their bodies are not known here.
+// Raises the estimates of channels that depend on uncertain ones. If one coordinate of a body is uncertain, its other coordinates are too,
+// and to a lesser degree those of bodies on which it acts: a body at rest may be hit at another time, although its own difference is zero.
+// Reactions count as one mechanism, since their bodies are not known here.
 void MethodCurves::share_estimates() {
   std::map<std::pair<int, ErrorKind>, std::vector<std::size_t>> bodies, mechanisms;
   for (std::size_t c = 0; c < channels_.size(); ++c) {
@@ -315,8 +316,8 @@ void MethodCurves::share_estimates() {
   share(mechanisms, k_part_of_mechanism);
 }
 
-// With fixed steps an event lies anywhere within a step, and three runs may agree by chance. The error is at least the motion within one
-// step before or after.
+// With fixed steps an event may lie anywhere within a step, and three runs may agree by chance. The error is therefore at least the largest
+// motion so far within one step.
 void MethodCurves::add_step_of_motion(std::size_t c) {
   const Trajectory& t = *levels_.back()->trajectory;
   double most = 0.0;

@@ -1,5 +1,5 @@
-// Runs of one method at several settings, with the error estimates that follow from them: for every channel as a function of time, and for
-// every event. Part of cross_check.h.
+// Runs of one method at several settings, and the error estimates that follow from their differences: for every channel as a function of
+// time, and for every event. Part of cross_check.h.
 #pragma once
 
 #include "mbd/trust/cross_check.h"
@@ -10,15 +10,15 @@
 
 namespace steplap {
 
-/// Channel in which runs are compared.
+/// A channel in which runs are compared.
 struct ComparedChannel {
   const Channel* channel = nullptr;
   std::size_t column = 0;
   ErrorKind kind = ErrorKind::position;
   double arm = 1.0;            ///< factor from angles to lengths, m
   double scale = 1.0;          ///< range over the run, or a part of the largest range of its kind; unit of the channel
-  double wide_scale = 1.0;     ///< larger scale: an error of this size means that the motion is lost
-  int body = 0, mechanism = 0; ///< body of the channel, and its mechanism: bodies that act on each other have the same number
+  double wide_scale = 1.0;     ///< larger scale: if the error reaches it, the motion is not known at all
+  int body = 0, mechanism = 0; ///< body of the channel, and number of its mechanism; bodies that act on each other belong to one mechanism
   int shares = -1;             ///< column that is 1 where a friction force is not unique (audit.h, "shares"); −1: none
 };
 
@@ -38,34 +38,34 @@ struct TimedEvent {
   EventKind kind = EventKind::none;
   bool is_at_start = false;
   double t = 0.0;
-  double shift = 0.0; ///< uncertainty of its time, s; infinite if the event is missing at another setting
-  double alone = 0.0; ///< time to the nearest other event of the element, s; a method with longer steps may miss both
+  double shift = 0.0; ///< uncertainty of the event's time, s; infinite if another setting lacks the event
+  double alone = 0.0; ///< time to the nearest other event of the element, s; a method with longer steps may miss both events
   double lasts = 0.0; ///< time to the next event of the element or to the end, s
   bool is_counted = true;
 };
 
 class MethodCurves {
 public:
-  /// `levels`: runs from coarse to fine, two or three. `step`: step of the finest one if fixed, else 0.
+  /// `levels`: two or three runs of the method, from coarse to fine. `step`: step of the finest run if it is fixed, else 0.
   MethodCurves(const std::vector<ComparedChannel>& channels, const std::vector<const RunResult*>& levels, double step, double end,
                const EventFilter& is_counted);
 
   [[nodiscard]] const RunResult& run() const { return *levels_.back(); }
   [[nodiscard]] std::size_t rows() const { return rows_; }
-  /// Returns the largest own error up to the sample, in the channel's unit.
+  /// Returns the largest estimated error of the finest run up to this sample, in the channel's unit.
   [[nodiscard]] double estimate(std::size_t channel, std::size_t row) const { return estimate_[channel][row]; }
-  /// Returns the uncertainty of times near the sample, s.
+  /// Returns the uncertainty of event times near this sample, s.
   [[nodiscard]] double slack(std::size_t row) const { return slack_[row]; }
   [[nodiscard]] const std::vector<TimedEvent>& events() const { return events_; }
   [[nodiscard]] double known_until() const { return known_until_; }
-  /// Discards the run, because its energy does not balance: none of its results is taken as known.
+  /// Sets the time until which the run is known to zero, because its energy does not balance.
   void distrust() { known_until_ = 0.0; }
   /// Returns the energy that friction of the element dissipates from t to t + span, J.
   [[nodiscard]] double friction_energy(const std::string& element, double t, double span) const;
   [[nodiscard]] double step() const { return step_; }
-  /// Returns the largest own error of a kind at the end, relative to the channels' scales, with its channel.
+  /// Returns the largest estimated error of a kind at the end, relative to the channels' scales, and its channel.
   [[nodiscard]] WorstError largest(ErrorKind kind) const;
-  /// Return own errors of dissipated energy and work at the end, J.
+  /// Return the estimated errors of dissipated energy and of work at the end, J.
   [[nodiscard]] double dissipated_error() const { return dissipated_error_; }
   [[nodiscard]] double work_error() const { return work_error_; }
 
@@ -87,10 +87,11 @@ private:
   double known_until_ = 0.0, dissipated_error_ = 0.0, work_error_ = 0.0;
 };
 
-/// Returns |x − y| at the sample, or the distance between the two graphs within `slack` seconds; for reactions at least within one sample.
+/// Returns the distance of two curves at a sample: |x − y|, or less if the graphs come nearer to each other within ± `slack` seconds. For
+/// reactions, which jump, at least the next sample on both sides is included.
 [[nodiscard]] double distance_at(const ComparedChannel& channel, const Trajectory& x, const Trajectory& y, std::size_t row, double slack);
 
-/// Returns the error left in the finest level, from the largest differences of neighbouring levels.
+/// Returns the estimated error of the finest run, given the largest differences of successive runs.
 [[nodiscard]] double extrapolated_error(const std::vector<double>& differences);
 
 } // namespace steplap

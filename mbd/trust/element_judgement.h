@@ -1,4 +1,4 @@
-// Criteria that a kind of element applies to every run: the result of ElementKind::judge, and helpers.
+// Result of ElementKind::judge, by which a kind of element applies its own criteria to every run, and helper functions.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -7,11 +7,11 @@
 
 namespace steplap {
 
-/// Judgement of one element after a run.
+/// Judgement on one element after a run.
 struct ElementJudgement {
   std::vector<CriterionResult> criteria; ///< may be none
   std::vector<std::string> caps;         ///< why the run cannot mean "hold" (Judgement::caps)
-  std::string distrust;                  ///< not empty: reason why the result of this element is impossible and the run cannot be trusted
+  std::string distrust;                  ///< reason why the element's result is impossible and the run cannot be trusted; "": none
 };
 
 /// Returns the range of a channel, or nullptr if the run has none.

@@ -12,13 +12,13 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_most_cells = 4000000; // most cells of a table (32 MB); longer lists are not paired
-constexpr double k_as_good_as_at = 1e-12;     // s, and relative to t: closer than this counts as at the event
-constexpr double k_furthest = 10.0;           // most distance of partners, in times to the neighbouring event of the element
+constexpr std::size_t k_most_cells = 4000000; // largest number of cells of a table (32 MB); longer lists are not paired
+constexpr double k_as_good_as_at = 1e-12;     // s, and relative to t: a time this near to an event counts as at the event
+constexpr double k_furthest = 10.0;           // largest time difference of a pair, in times to the neighbouring event of the element
 
 using Places = std::vector<std::size_t>;
 
-using Key = std::tuple<std::string, EventKind, bool>; // the last: is it at t = 0?
+using Key = std::tuple<std::string, EventKind, bool>; // element, kind, and whether the event is at t = 0
 
 Key key_of(const Event& event) { return {event.element, event.kind, event.is_at_start()}; }
 
@@ -29,17 +29,17 @@ std::map<Key, std::pair<Places, Places>> by_key(const std::vector<Event>& mine, 
   return lists;
 }
 
-// Returns for each time in `few` its partner in `many`, with the least sum of differences and the order kept. Dynamic programming: sum(i,
-// out) is the least sum for the first i of `few` if `out` of `many` were skipped.
+// Assigns each time in `few` to one in `many`, in order and with the least sum of differences. Dynamic programming: sum(i, out) is the
+// least sum for the first i times of `few` if `out` times of `many` are skipped.
 Places partners(const std::vector<double>& few, const std::vector<double>& many) {
   const std::size_t width = many.size() - few.size() + 1;
   std::vector<double> sum(width, 0.0);
-  std::vector<char> is_left_out(few.size() * width, 0); // is the least sum reached by skipping one more?
+  std::vector<char> is_left_out(few.size() * width, 0); // true if the least sum is reached by skipping one more time
   for (std::size_t i = 0; i < few.size(); ++i)
     for (std::size_t out = 0; out < width; ++out) {
       sum[out] += std::abs(few[i] - many[i + out]);
       if (out == 0 || !(sum[out - 1] < sum[out])) continue;
-      // Skipping one more of `many` costs less than pairing with it.
+      // It is better to skip one more time of `many` than to pair it.
       sum[out] = sum[out - 1];
       is_left_out[i * width + out] = 1;
     }
@@ -78,13 +78,13 @@ void pair_up(const Places& mine, const Places& theirs, const std::vector<Event>&
     if (!is_paired[i]) alone.push_back(many[i]);
 }
 
-// Returns for each event the time to the nearest other event of the same element at another instant, of any kind, s.
+// Returns for each event the time, s, to the nearest event of the same element, of any kind, at another instant.
 std::vector<double> times_to_neighbours(const std::vector<Event>& events) {
   std::vector<double> times(events.size(), std::numeric_limits<double>::infinity());
   std::map<std::string, Places> of_element;
   for (std::size_t i = 0; i < events.size(); ++i) of_element[events[i].element].push_back(i);
   for (const auto& [element, places] : of_element) {
-    std::size_t before = 0; // first event at the same instant as the last one
+    std::size_t before = 0; // index of the first event at the same instant as the last one
     for (std::size_t k = 1; k < places.size(); ++k) {
       const double passed = events[places[k]].t - events[places[before]].t;
       if (passed <= k_as_good_as_at * std::max(1.0, events[places[k]].t)) continue;
@@ -101,7 +101,8 @@ std::vector<double> times_to_neighbours(const std::vector<Event>& events) {
   return times;
 }
 
-// Removes pairs that are too far apart to be the same event, such as a bounce of 1 µs in one run and one 0.1 s later in the other.
+// Separates pairs whose time difference is too large for the same event, such as a bounce of 1 µs in one run and one 0.1 s later in the
+// other.
 void part_strangers(const std::vector<Event>& mine, const std::vector<Event>& reference, EventMatch& match) {
   const std::vector<double> my_times = times_to_neighbours(mine), their_times = times_to_neighbours(reference);
   const auto is_strange = [&](const EventPair& pair) {

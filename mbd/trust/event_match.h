@@ -1,9 +1,9 @@
 // Pairs the events of two runs of one system.
 //
-// Two events can be partners if the same kind of event happened to the same element. The shorter list is assigned to the longer one in
-// order, with the least sum of time differences; the rest stays without partner. Slip from the start (t = 0) is only paired with slip from
-// the start. Events are not partners if they are much further apart than the time to the neighbouring events of the element: each run then
-// has an event that the other lacks.
+// Two events can be paired if the same kind of event happened to the same element. The events of the run with fewer of them are assigned to
+// those of the other, in order and with the least sum of time differences; the others stay unpaired. Slip from the start (t = 0) is paired
+// only with slip from the start. Two events are not paired if their time difference is much larger than the times to neighbouring events of
+// the element: each run then has an event that the other lacks.
 #pragma once
 
 #include "mbd/events/event.h"
@@ -19,18 +19,18 @@ struct EventPair {
 
 struct EventMatch {
   std::vector<EventPair> pairs;
-  std::vector<std::size_t> only_mine, only_reference; ///< indices of events without partner
+  std::vector<std::size_t> only_mine, only_reference; ///< indices of unpaired events
 };
 
 [[nodiscard]] EventMatch match_events(const std::vector<Event>& mine, const std::vector<Event>& reference);
 
-/// Times between an event and its partner. In them one run is before the event and the other one after it, so quantities that jump at
+/// The intervals between paired events. Within them one run is before the event and the other one after it, so quantities that jump at
 /// events cannot be compared.
 class BetweenEvents {
 public:
   BetweenEvents(const EventMatch& match, const std::vector<Event>& mine, const std::vector<Event>& reference);
 
-  /// Returns true if t lies in such an interval or, up to rounding, at an event.
+  /// Returns true if t lies in such an interval, or at an event up to rounding.
   [[nodiscard]] bool holds(double t) const;
 
 private:

@@ -20,18 +20,19 @@ namespace {
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 constexpr double k_rounded_terms = 64.0;
-constexpr double k_part_of_motion = 1e-3;      // share of a direction of motion; a smaller part along the free directions is rounding
-constexpr double k_skew = 1e-9;                // share of A; smaller asymmetry is rounding
-constexpr double k_real = 1e-6;                // imaginary part over modulus of an eigenvalue; below it the growth has no oscillation
-constexpr Eigen::Index k_most_companion = 120; // directions; their dense eigenvalue problem has twice the size
+constexpr double k_part_of_motion = 1e-3;      // fraction of a direction of motion; a smaller component along Z is rounding
+constexpr double k_skew = 1e-9;                // relative to A; a smaller asymmetry is rounding
+constexpr double k_real = 1e-6;                // imaginary part over modulus of an eigenvalue; below this the growth counts as real
+constexpr Eigen::Index k_most_companion = 120; // largest number of directions; the dense eigenvalue problem has twice the size
 constexpr int k_bisections = 30;
-// Rows whose independent part is below this share of their length are dependent, friction rows included (theory.md).
+// Rows whose independent part is below this fraction of their length are dependent, friction rows included (theory.md).
 constexpr double k_rank = 1e-6;
-// Cosine of 6°; a curved path leaves the span of its recorded chords by less than that before another chord is recorded.
+// Cosine of 6°. A curved path deviates from the span of its recorded chords by less than that before a further chord is recorded.
 constexpr double k_within = 0.995;
-constexpr double k_even = 1e-3; // share of the speed; motion is even if velocities change by less, since the equations change as little
-constexpr double k_idle = 1e-9; // share of the largest force; a smaller reaction is rounding
-// Displacement by which the touching rows are found: far above rounding of gaps given as zero, far below the compression by loads.
+constexpr double k_even = 1e-3; // fraction of the speed; smaller changes of velocity count as even motion
+constexpr double k_idle = 1e-9; // fraction of the largest force; a smaller reaction counts as none
+// Displacement by which contacts in touch are found, as a fraction of a body's size: far above rounding of gaps given as zero, far below
+// the compression by loads.
 constexpr double k_trial = 1e-9; // share of a body's size
 constexpr std::uint64_t k_trials = 2;
 
@@ -58,10 +59,10 @@ struct FastestGrowth {
   double rate = 0.0;
   VecX eta;
   double swing = 0.0;     // as in FrozenGrowth
-  bool may_swing = false; // result of the general eigenvalue problem
+  bool may_swing = false; // true: the general eigenvalue problem was solved, in which growth may oscillate
 };
 
-// Returns the largest σ with singular P(σ) by bisection on positive definiteness, for symmetric A. Precondition: σ > `least`.
+// Returns the largest σ for which P(σ) is singular, by bisection on positive definiteness. Preconditions: symmetric A, and σ > `least`.
 FastestGrowth fastest_of_symmetric(const MatX& a, const MatX& b, double least) {
   double low = least, high = std::max(2.0 * least, std::sqrt(std::max(symmetric_eigen(a).values.maxCoeff(), 0.0)));
   for (int i = 0; i < k_bisections && high - low > 1e-6 * high; ++i) {
@@ -74,7 +75,8 @@ FastestGrowth fastest_of_symmetric(const MatX& a, const MatX& b, double least) {
 enum class Swings : unsigned char { count, do_not_count };
 
 // Returns the eigenvalue of the first-order equations with the largest real part. Rigid motions without stiffness are separated first, with
-// their rounding. `size_of` returns |K| |x| for each column x of displacements along `v.basis`, the scale of that rounding.
+// a tolerance for rounding: size_of returns |K| |x| for displacements x along `v.basis`. Without Swings::count oscillating growth is
+// ignored.
 FastestGrowth fastest_of_all(FreeVibration v, const std::function<MatX(const MatX&)>& size_of, Swings swings) {
   FastestGrowth found;
   if (v.a.cols() > k_most_companion) return found;
@@ -83,13 +85,13 @@ FastestGrowth fastest_of_all(FreeVibration v, const std::function<MatX(const Mat
   try {
     modes = modes_of(v);
   } catch (const NumericalFailure&) {
-    return found; // no convergence: no growth is shown
+    return found; // the eigenvalues do not converge: no growth is reported
   }
   for (const FreeMode& mode : modes) {
     const double rate = mode.eigenvalue.real();
     if (swings == Swings::do_not_count && std::abs(mode.eigenvalue.imag()) > k_real * rate) continue;
     if (rate <= found.rate) continue;
-    // Choose the phase in which the displacement is largest: xᵀx real and positive.
+    // Choose the phase of the oscillation in which the displacement is largest: xᵀx real and positive.
     const std::complex<double> square = (mode.x.transpose() * mode.x)(0, 0);
     const double half = 0.5 * portable::atan2(square.imag(), square.real());
     const VecX eta = mode.x.real() * portable::cos(half) + mode.x.imag() * portable::sin(half);
@@ -98,7 +100,7 @@ FastestGrowth fastest_of_all(FreeVibration v, const std::function<MatX(const Mat
   return found;
 }
 
-// Returns the fastest growth if it may exceed `least`, else an empty result.
+// Returns the fastest growth if it may exceed `least`, 1/s; otherwise an empty result.
 FastestGrowth fastest_above(double least, const FreeVibration& v, const std::function<MatX(const MatX&)>& size_of, Swings swings) {
   const auto is_skewed = [](const MatX& m) { return (m - m.transpose()).cwiseAbs().sum() > k_skew * m.cwiseAbs().sum(); };
   const bool is_skew = is_skewed(v.a);
@@ -127,7 +129,8 @@ bool is_steady_motion(const System& system, const LegMotion& leg) {
          std::all_of(leg.states.begin(), leg.states.end(), is_even);
 }
 
-// Returns true for a row that resists one side only and may touch without force: a rope that is just taut, a freewheel without drag.
+// Returns true for a row that resists in one direction only and may touch without force: a rope that is just taut, a freewheel without
+// drag.
 bool is_one_sided(const FrictionUnit& unit) {
   if (unit.rope) return true;
   const OneWayLock* const lock = one_way_lock(unit);
@@ -143,7 +146,7 @@ FrozenLeg::FrozenLeg(const System& system, const LegMotion& leg)
   find_variants();
 }
 
-// Linearises at `state`. Reactions come from the run's equations of motion, because statics would omit inertial loads.
+// Linearises at `state`. The reactions are taken from the run's equations of motion, because statics does not contain inertial loads.
 void FrozenLeg::linearise(const State& state, const Variant& variant) {
   if (linearised_ == &variant && state.t == at_run_.t && state.q == at_run_.q && state.v == at_run_.v) return;
   linearised_ = &variant;
@@ -172,7 +175,7 @@ void FrozenLeg::take_reactions(const Snapshot& now) {
   }
 }
 
-// Marks one-sided rows without force, by slot of Snapshot::friction_force. Empty if there are none.
+// Returns flags, by slot of Snapshot::friction_force, of one-sided rows that carry no force; empty if there are none.
 std::vector<char> FrozenLeg::idle_one_sided_rows() const {
   std::vector<char> idle;
   double size = 0.0;
@@ -192,7 +195,7 @@ std::vector<char> FrozenLeg::idle_one_sided_rows() const {
   return idle;
 }
 
-// Returns pseudo-random displacements along the free directions, each followed by its mirror image. A contact that touches without force
+// Returns pseudo-random displacements along the free directions, each followed by its mirror image: a contact that touches without force
 // opens under one of the two.
 std::vector<VecX> FrozenLeg::trial_displacements() const {
   std::vector<VecX> trials;
@@ -223,7 +226,7 @@ void FrozenLeg::find_variants() {
     linearise(leg_.begin, variants_.back());
   }
   first_ = unmoved_directions(rows);
-  linearised_ = nullptr; // variants_ may be reallocated and statics_ moves to other poses, so the stored linearisation is invalid
+  linearised_ = nullptr; // not valid any more: variants_ may be reallocated, and statics_ is evaluated at other poses
   if (first_.cols() == 0) return;
   std::vector<std::vector<UnitMode>> seen = {at_rest_.mode};
   for (const VecX& displacement : trial_displacements()) {
@@ -255,10 +258,9 @@ MatX FrozenLeg::free_directions(Rows rows) const {
   return PivotedQr(columns, k_rank).complement();
 }
 
-// Returns the directions in which the leg moves, in coordinates along Z: orthonormal, or empty. Without drives they are the projections of
-// the motion on Z. A drive also moves all bodies carried by the driven one, and these projections would be misleading: a rod that rides
-// upright on a car does not tilt. With drives, only those combinations of motions count that keep all driven coordinates constant and lie
-// within Z.
+// Returns orthonormal directions in which the leg moves, in coordinates along Z; may be empty. Without drives they are the projections of
+// the motion on Z. A drive also moves all bodies that the driven one carries, and these projections would mislead: a rod that rides upright
+// on a car does not tilt. With drives, only those combinations of motions count that keep all driven coordinates constant and lie within Z.
 MatX FrozenLeg::moved_directions(const MatX& free) const {
   const auto count = static_cast<Eigen::Index>(leg_.moved.directions().size());
   if (count == 0) return MatX(free.cols(), 0);
@@ -312,14 +314,15 @@ FrozenGrowth FrozenLeg::growth_at(const State& state, double least, std::size_t 
   if (!(fastest.rate > least)) return {};
   const VecX shape = (z * fastest.eta).normalized();
   if (fastest.may_swing) return {fastest.rate, shape, fastest.swing};
-  // The growth must come from a negative stiffness that exceeds rounding of its terms.
+  // The growth must come from a negative stiffness that is larger than the rounding of its terms.
   const VecX place = weights_.cwiseInverse().cwiseProduct(shape);
   const double rounding = k_epsilon * (k_rounded_terms * place.cwiseAbs().dot(size * place.cwiseAbs()) + 4.0 * a.cwiseAbs().maxCoeff());
   if (!(place.dot(stiffness * place) > rounding)) return {};
   return {fastest.rate, shape, 0.0};
 }
 
-// Displacements of bodies are T times those of their clusters; displacements of clusters are S times those of their root bodies.
+// The linearised equations have other coordinates than Z: displacements of bodies are T times those of their clusters, and displacements of
+// clusters are S times those of their root bodies.
 FrozenGrowth FrozenLeg::steady_growth_at(const State& state, double least) {
   const OneThread alone;
   linearise(state, variants_.front());

@@ -20,16 +20,17 @@ constexpr double k_finer_tolerance = 0.01;
 constexpr double k_least_tolerance = 1e-14; // smaller tolerances are dominated by rounding
 constexpr int k_division = 2;
 constexpr double k_finer_step = 1.0 / k_division;
-constexpr double k_finer_cost = 3.0;    // cost of a hundredth of the tolerance; a method of order 5 takes 2.5 times the steps
-constexpr double k_least_error = 1e-14; // share of a channel's largest value, and of times
-constexpr double k_first_order = 0.5;   // share of the error left by half the step
+constexpr double k_finer_cost = 3.0;    // relative cost of a run with 1/100 of the tolerance; a method of order 5 takes 2.5 times the steps
+constexpr double k_least_error = 1e-14; // least error relative to a channel's largest value, and to times
+constexpr double k_first_order = 0.5;   // ratio of the errors if the step is halved
 constexpr double k_safety = 1.5;
-// Share of the error left by a finer run; beyond it the difference is less than a tenth of the error, and the estimate is useless.
+// Largest ratio of a finer run's error to that of the run. Above it the difference is less than a tenth of the error, and the estimate is
+// useless.
 constexpr double k_most_left = 0.9;
 constexpr double k_stepping_safety = 3.0; // for time stepping, which locates no events
-constexpr double k_little = 1e7;          // evaluations times parts that references may take even if the run was short
-// Extremes near a singular position (within 1e-5 rad) are not known: a force proportional to 1/distance is k_grown times its usual size
-// there, and runs that come to different distances disagree by more than k_disagreed.
+constexpr double k_little = 1e7;          // cost (evaluation_cost()) that reference runs may have even if the run was short
+// Extremes near a singular position (within 1e-5 rad) are unknown: a force proportional to 1/distance is more than k_grown times its usual
+// size there, and runs that come to different distances disagree by more than k_disagreed.
 constexpr double k_disagreed = 0.01, k_grown = 1e3;
 
 bool locates_events(const SimulationOptions& options) { return !method(options.integrator).is_time_stepping; }
@@ -38,8 +39,8 @@ bool takes_shorter_steps(const RunStatistics& finer, const RunStatistics& run) {
   return finer.steps > run.steps || finer.evaluations > run.evaluations;
 }
 
-// Returns the ratio of error to difference; unknown if the other run is not finer. The ratio of steps actually taken counts, not only that
-// of the settings.
+// Returns the ratio of the run's error to the difference of the two runs; unknown if `fine` is not finer. For fixed steps the number of
+// steps actually taken counts, too.
 double factor_for(const SimulationOptions& coarse, const RunStatistics& run, const SimulationOptions& fine, const RunStatistics& finer,
                   bool has_storm) {
   if (fine.settings.step != coarse.settings.step) {
@@ -62,8 +63,8 @@ double difference(const std::optional<double>& a, const std::optional<double>& b
   return a ? difference(*a, *b) : 0.0;
 }
 
-// Returns the difference of two values of a channel. A number without unit may have a pole, such as the margin of an unloaded element,
-// which is infinite. There it consists of rounding, so a difference counts as unknown.
+// Returns the difference of two values of a channel. A dimensionless number may have a pole, such as the margin of an unloaded element,
+// which is infinite. Near a pole the digits are rounding errors, so any difference counts as unknown.
 double difference(const Channel& channel, double a, double b) {
   const bool is_at_pole = channel.unit.empty() && std::max(std::abs(a), std::abs(b)) > ExtremeFinder::k_at_pole;
   return is_at_pole && a != b ? k_unknown_error : difference(a, b);
@@ -74,16 +75,16 @@ void keep_larger(double& error, double other) { error = larger_error(error, othe
 // Returns true if values of this unit may jump at events. Positions do not; velocities jump at impacts.
 bool may_jump(const Channel& channel) { return channel.unit != "m" && channel.unit != "rad"; }
 
-// Comparison of a run with one finer run.
+// Compares a run with one finer run.
 class Comparison {
 public:
-  /// `run` has every `stride`-th of the samples of `fine`.
+  /// The i-th sample of `run` belongs to sample i · `stride` of `fine`. `factor`: ratio of error to difference.
   Comparison(const System& system, const RunResult& run, const RunResult& fine, double factor, std::size_t stride = 1)
       : system_(system), run_(run), fine_(fine), match_(match_events(run.events, fine.events)), factor_(factor), stride_(stride) {}
 
   [[nodiscard]] const EventMatch& match() const { return match_; }
 
-  /// Adds the errors of `run` to the estimate.
+  /// Adds the error of each result, `factor` times its difference, to the estimate if it is larger than the one there.
   void add_to(GlobalErrorEstimate& estimate) const {
     const std::size_t ranges = std::min(run_.ranges.size(), fine_.ranges.size());
     for (std::size_t c = 0; c < ranges; ++c) add_range(c, estimate.channels[c]);
@@ -105,7 +106,7 @@ private:
     if (mine.had_no_value != fine.had_no_value) error.low = error.high = k_unknown_error;
   }
 
-  // Compares row by row, because trajectories may be on disk.
+  // Trajectories are compared row by row, because they may be on disk.
   void add_curves(std::vector<ChannelError>& errors) const {
     const Trajectory &mine = *run_.trajectory, &fine = *fine_.trajectory;
     const auto& channels = mine.channels();
@@ -144,10 +145,10 @@ private:
 
 double spread_of(const ChannelRange& range) { return range.high.value - range.low.value; }
 
-// Properties of all channels with the same unit.
+// Values common to all channels with the same unit.
 struct Kind {
   double range = 0.0, largest = 0.0; ///< largest range, largest value
-  double scale = 0.0;                ///< possible size of forces or motions in the model; rounding of it remains if nothing moves
+  double scale = 0.0;                ///< size of forces or motions that the model could have; its rounding errors remain if nothing moves
   double typical_error = 0.0;        ///< median error of extremes over their ranges
 };
 
@@ -173,8 +174,8 @@ std::map<std::string, Kind> kinds_of(const std::vector<ChannelRange>& ranges, co
   return kinds;
 }
 
-// Sets the scales of all units, as in extreme_scales.cpp: acceleration a = F/m by the largest force, velocity √(a L) over the length L of
-// the model. Angular accelerations also have the scale (g + acceleration of the centre)/radius of gyration.
+// Sets the scales of all units, as in extreme_scales.cpp: acceleration a = F/m with the largest force F, velocity √(a L) with the length L
+// of the model. For angular accelerations, (g + acceleration of the centre)/radius of gyration is a scale, too.
 void set_scales(const System& system, const RunResult& run, std::map<std::string, Kind>& kinds) {
   const auto largest = [&](const char* unit) {
     const auto found = kinds.find(unit);
@@ -208,13 +209,13 @@ bool diverges(const ChannelRange& range, const Extreme& extreme, double error) {
   return !(error <= k_disagreed * size) && size > k_grown * std::max(std::abs(range.first), std::abs(range.final));
 }
 
-// Returns false for a formula whose extremes could not be bounded to the resolution. Both runs may then have missed the same extreme.
+// Returns false for a formula whose extremes could not be bounded to the resolution, so that both runs may have missed the same extreme.
 bool is_located(const ChannelRange& range, const Kind& kind) {
   const double size = std::max({kind.range, kind.largest, range.channel->unit.empty() ? 1.0 : 0.0});
   return !formula_of(*range.channel) || range.resolution <= ExtremeFinder::k_resolution * size;
 }
 
-// Adds errors that the finest run shares with the run.
+// Adds those errors to the estimate that the finest run shares with the run.
 void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate& estimate) {
   const SimulationOptions& options = estimate.finer.back();
   const IntegratorSettings& settings = options.settings;
@@ -231,8 +232,8 @@ void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate&
     ChannelError& error = estimate.channels[c];
     const double floor = tolerance * kind.range + k_least_error * std::max(kind.largest, kind.scale);
     const double spread = spread_of(range);
-    // Time stepping: the position of impacts within a step is random, so a single extreme may agree by chance. The median error of its unit
-    // is the least estimate.
+    // In time stepping the position of an impact within a step is random, and a single extreme may agree by chance. The median error of all
+    // channels with the same unit is therefore the least estimate.
     const double least = !has_located_events && std::isfinite(spread) ? kind.typical_error * spread : 0.0;
     const double resolution = std::isinf(range.resolution) ? k_unknown_error : range.resolution;
     error.low = larger_error(larger_error(error.low, least), range.unsure_low) + floor + resolution;
@@ -289,7 +290,7 @@ void keep_worst(RunDifference& worst, const RunDifference& other, double factor)
 
 // --- errors by reference runs
 
-// Adds the error of the reference, from the coarse reference run, which may have few samples and no extremes.
+// Adds the error of the reference, which is estimated from the coarser reference run. That run may have few samples and no extremes.
 void add_own_errors(const System& system, const RunResult& run, const ReferenceRuns& pair, const EventMatch& match,
                     GlobalErrorEstimate& estimate) {
   GlobalErrorEstimate own;
@@ -299,7 +300,7 @@ void add_own_errors(const System& system, const RunResult& run, const ReferenceR
   comparison.add_to(own);
   std::vector<double> of_event(pair.reference.events.size(), k_unknown_error);
   for (const EventPair& same : comparison.match().pairs) of_event[same.reference] = own.event_times[same.mine];
-  double time = 0.0; // largest error of events that both runs have
+  double time = 0.0; // largest error of the events that both runs have
   for (const EventPair& same : match.pairs) {
     estimate.event_times[same.mine] += of_event[same.reference];
     if (std::isfinite(of_event[same.reference])) time = std::max(time, of_event[same.reference]);
@@ -324,8 +325,8 @@ std::string tolerances_of(const ReferenceRuns& pair) {
          rounded_text(pair.options.settings.tolerance);
 }
 
-// Sets errors to unknown from t on, where the two references diverge. Earlier events and crossings of 1 stay known. Extremes cover the
-// whole run and become unknown.
+// Sets the errors of all results after t, where the two references diverge, to unknown. Earlier events and crossings of 1 keep their
+// errors. Extremes cover the whole run and become unknown.
 void forget_from(double t, const RunResult& run, const ReferenceRuns& pair, GlobalErrorEstimate& estimate) {
   const std::vector<ChannelError> channels = estimate.channels;
   const std::vector<double> times = estimate.event_times;
@@ -339,7 +340,7 @@ void forget_from(double t, const RunResult& run, const ReferenceRuns& pair, Glob
                             " s, so the motion from there on depends on the last digits and cannot be computed";
 }
 
-// Estimates the errors of `run` by reference runs. Returns false if there are none.
+// Estimates the errors of `run` by reference runs. Returns false if there are no usable ones.
 bool measure_by_references(const System& system, const State& initial, const SimulationOptions& options, const RunResult& run,
                            const EventFilter& is_counted, EvaluationBudget& budget, GlobalErrorEstimate& estimate) {
   const double parts = evaluation_cost(system, run.statistics) / static_cast<double>(std::max(run.statistics.evaluations, 1L));

@@ -1,5 +1,5 @@
-// Assessment of a joint that is held by friction over an area: figures and verdict of one joint after a run. All figures are extremes over
-// the whole run (mbd/simulation/extremes.h), independent of the output. The kind of the joint computes them.
+// Assessment of a joint that is held by friction over an area: figures and verdict for one joint after a run. Extreme values cover the
+// whole run (mbd/simulation/extremes.h), whatever the output step. The kind of the joint computes the figures.
 #pragma once
 
 #include "mbd/simulation/simulation.h"
@@ -13,12 +13,12 @@
 
 namespace steplap {
 
-/// Verdict on one joint, in descending order of severity.
+/// Verdict on one joint. Entries are in descending order of severity.
 enum class JointVerdict : std::uint8_t {
   not_assessed, ///< a joint without interfaces, which cannot slip
   came_apart,
   corner_parted,
-  unpressed, ///< an interface has no pressure, or a corner or packet no capacity
+  unpressed, ///< an interface without pressure, or a corner or packet without capacity
   slid_too_far,
   crushed_edges,
   closed_clearance,
@@ -32,7 +32,7 @@ enum class JointVerdict : std::uint8_t {
 
 /// Returns the text of a verdict, such as "a corner parted".
 [[nodiscard]] const char* words_of(JointVerdict verdict);
-/// Returns the verdict of the run that this joint alone leads to.
+/// Returns the verdict on the run to which this joint alone leads.
 [[nodiscard]] Verdict outcome_of(JointVerdict verdict);
 
 /// An element that carries load between the same two bodies as a joint.
@@ -58,10 +58,10 @@ struct JointAssessment {
   Extreme corner_margin, part_margin;      ///< smallest margin of a single corner or packet; NaN if there is only one
   double largest_demand = 0.0;             ///< largest force on the limb, N
   double weight = 0.0;                     ///< weight of the limb, N
-  bool is_loaded = false;                  ///< the force on it changed by more than rounding relative to its weight
+  bool is_loaded = false;                  ///< the force on the limb changed by more than rounding, relative to its weight
   double slid_x = 0.0, slid_y = 0.0;       ///< m, at the end, in the axes of the active part
-  double slid_angle = 0.0;                 ///< rad, θ_acc at the end
-  double area_lost = 0.0;                  ///< m², at the end: sum over the interfaces that lost area, times their numbers
+  double slid_angle = 0.0;                 ///< rotation at the end, rad (θ_acc)
+  double area_lost = 0.0;                  ///< m², at the end, over all interfaces, each times the number of equal ones
   Extreme slid_share;                      ///< largest displacement of a corner relative to the width of its overlap
   double most_slide = 0.0;                 ///< limit of slid_share in the model
   Extreme overlap_left;                    ///< smallest remaining fraction of a corner's overlap
@@ -72,25 +72,26 @@ struct JointAssessment {
   std::optional<double> allowed_line_load; ///< N/m
   bool has_edges = false;                  ///< sheet edges are modelled as contacts
   std::vector<SharedLoad> shared_with;     ///< elements in parallel; the joint's margin refers to the remaining load
-  bool is_elastic = false;                 ///< it has a stiffness; otherwise elements in parallel carry nothing before it slides
+  bool is_elastic = false;                 ///< the joint has a stiffness; otherwise elements in parallel carry nothing before it slides
   bool has_come_apart = false;
   bool is_monitored = false;
 
   [[nodiscard]] bool has_parted() const { return overlap_left.value <= 0.0; } ///< a whole corner has separated
-  /// Returns true if some part of the joint has no pressure or no capacity.
+  /// Returns true if a part of the joint has no pressure or no capacity.
   [[nodiscard]] bool is_unpressed() const { return least_pressure.value <= 0.0 || corner_margin.value <= 0.0 || part_margin.value <= 0.0; }
   [[nodiscard]] bool has_weak_part() const { return corner_margin.value < 1.0 || part_margin.value < 1.0; }
   [[nodiscard]] bool has_slid_too_far() const { return slid_share.value > most_slide; }
   [[nodiscard]] bool has_crushed_edges() const { return edge_share.value > 1.0; }
   /// Returns the allowed line load over the largest one; infinite if no edge was loaded, NaN if none is given.
   [[nodiscard]] double edge_margin() const { return 1.0 / edge_share.value; }
-  /// Returns true if the clearance has closed. The sheets then butt, which the model does not represent (unless it has edges).
+  /// Returns true if the clearance has closed. The sheets then touch end to end, which the model contains only if it has edges.
   [[nodiscard]] bool has_left_range() const;
-  /// Returns true if a joint that is part of the motion never slipped although its margin was below 1.
+  /// Returns true if the joint takes part in the motion and never slipped although its margin was below 1, which is impossible.
   [[nodiscard]] bool contradicts_itself() const {
     return !is_monitored && !has_slipped && !has_come_apart && smallest_margin < 1.0 - k_held_beyond;
   }
-  /// Returns true if a joint that is part of the motion carried more than its capacity, so that the results within steps are unreliable.
+  /// Returns true if the joint takes part in the motion and carried clearly more than its capacity, so that results within steps are
+  /// unreliable.
   [[nodiscard]] bool bears_too_much() const { return !is_monitored && !has_come_apart && smallest_margin < 1.0 - k_off_surface; }
   [[nodiscard]] bool is_known() const { return smallest_margin == smallest_margin; }
 

@@ -1,4 +1,4 @@
-// Judges a run: calculates its verdict from all criteria.
+// Judges a run: computes its verdict from all criteria.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -11,8 +11,8 @@ namespace steplap {
 /// stopped early, empty if it reached its end.
 [[nodiscard]] Judgement judge(const Model& model, const System& system, const RunResult& result, const std::string& failure);
 
-/// Returns the channels whose extremes decide whether a run can be trusted. A caller that omits channels must keep these;
-/// otherwise untrustworthy runs pass as trusted.
+/// Returns the channels whose extremes decide whether a run can be trusted. Callers that omit channels must keep these. Otherwise runs that
+/// cannot be trusted pass as trusted.
 [[nodiscard]] std::vector<std::string> channels_of_trust(const Model& model);
 
 } // namespace steplap

@@ -12,7 +12,7 @@ namespace {
 
 double radius_of(const BodyData& body) { return body.mass > 0.0 && body.inertia > 0.0 ? std::sqrt(body.inertia / body.mass) : 1.0; }
 
-// Accuracy of the pose and velocity of a body: along both axes, and about its centre.
+// Accuracy of pose and velocity of one body: of its position along both axes, m and m/s, and of its angle, rad and rad/s.
 struct OfBody {
   double place = 0.0, angle = 0.0, rate = 0.0, spin = 0.0;
 };
@@ -24,7 +24,7 @@ OfBody of_body(const System& system, int b, const Motion<double>& m, double met)
           met + k_rounded_sum * std::abs(m.omega)};
 }
 
-// Returns the accuracy of the displacement along one row of a pair's Jacobian: Σ |J| · accuracy of the six coordinates.
+// Returns the error of the force in one row of a pair's Jacobian J: Σ |J| · accuracy, over the six coordinates of the pair.
 double changed_by(const PairJacobian& pair, int row, const OfBody& a, const OfBody& b) {
   const double pose[6] = {a.place, a.place, a.angle, b.place, b.place, b.angle};
   const double velocity[6] = {a.rate, a.rate, a.spin, b.rate, b.rate, b.spin};

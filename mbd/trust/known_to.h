@@ -1,7 +1,7 @@
-// Accuracy limits of positions, velocities and forces that no tolerance or step removes: projection meets constraints only to its own
-// tolerance, and positions, velocities and times are rounded. If nothing moves, these are the only differences between two runs.
+// Accuracy limits of positions, velocities and forces that no tolerance and no step can improve: projection satisfies constraints only to
+// its own tolerance, and positions, velocities and times are rounded. If nothing moves, two runs differ only by this.
 //
-// A position error ε changes the force of a spring of stiffness k by k ε, and makes a mass m on it oscillate at velocity ε √(k/m). A
+// A position error ε changes the force of a spring of stiffness k by k ε, and makes a mass m on it oscillate with velocity ε √(k/m). A
 // velocity error ε changes the force of a damper c by c ε.
 #pragma once
 
@@ -11,17 +11,17 @@
 
 namespace steplap {
 
-/// Each value is that of the body for which it is largest.
+/// Accuracy limits of a system: each member is that of the body for which it is largest.
 struct KnownTo {
   double rate = 0.0;  ///< m/s
-  double force = 0.0; ///< N: sum over all elements that act on the body
+  double force = 0.0; ///< N; sum over all elements that act on the body
 };
 
-/// Returns the accuracy limits. `met`: accuracy of constraints in m or rad, and m/s or rad/s (SimulationSettings::projection_tolerance).
-/// `scratch` is overwritten.
+/// Returns the accuracy limits at `s`. `met`: accuracy to which constraints are satisfied, m or rad, and m/s or rad/s
+/// (SimulationSettings::projection_tolerance). `scratch` is overwritten.
 [[nodiscard]] KnownTo known_to(const System& system, const Snapshot& s, double met, std::vector<PairJacobian>& scratch);
 
-/// Returns the accuracy of positions, m: the largest over all bodies.
+/// Returns the accuracy of positions, m: that of the body for which it is largest.
 [[nodiscard]] double places_known_to(const System& system, const Snapshot& s, double met);
 
 /// Returns the accuracy of the velocity along a row, m/s.

@@ -12,19 +12,20 @@ namespace steplap {
 namespace {
 
 constexpr const char* k_method = "auto";
-// rk4 at usual steps has errors of 1e-9 to 1e-4 of a range; an adaptive run has errors of ten to a hundred times its tolerance. A reference
-// at 1e-11 costs little more than one at 1e-8, since samples and extremes dominate. Below 1e-13 rounding dominates.
+// Tolerances of the references. rk4 at usual steps has errors of 1e-9 to 1e-4 of a range; an adaptive run has errors of ten to a hundred
+// times its tolerance. A reference at 1e-11 costs little more than one at 1e-8, since samples and extremes dominate the cost. Below 1e-13
+// rounding dominates.
 constexpr double k_first_tolerance = 1e-9, k_tightening = 0.01;
 constexpr double k_most_tolerance_of_last = 1e-12;
 constexpr int k_division = 2;
-constexpr double k_most_own_error = 1.0 / 3.0; // share of the run's difference from the reference
+constexpr double k_most_own_error = 1.0 / 3.0; // largest error of the reference, relative to the difference between run and reference
 constexpr double k_safety = 1.5;               // because no error is exactly proportional to the tolerance
-constexpr double k_parted = 0.01;              // share of a range; more than a million times the larger tolerance
-constexpr double k_fewest_rows = 100.0;        // least number of samples of the coarse run, so that the relevant oscillations are resolved
-constexpr long k_steps_between_checks = 64;    // checks of the cost, every so many steps
+constexpr double k_parted = 0.01;              // difference that counts as divergence, relative to a range; 1e6 times the larger tolerance
+constexpr double k_fewest_rows = 100.0;        // least number of samples of the coarser run, with which its oscillations are resolved
+constexpr long k_steps_between_checks = 64;    // number of steps between checks of the cost
 
-// Returns the options of the coarse run: every stride-th sample of the reference. With few samples, or samples of some channels only,
-// extremes are located instead.
+// Returns the options of the coarser run, which has every stride-th sample of the reference. If samples are few or do not include all
+// channels, extremes are located in addition.
 SimulationOptions thinned_out(SimulationOptions coarse, const System& system, const RunResult& run, std::size_t stride) {
   coarse.output_step *= static_cast<double>(stride);
   const bool has_all = run.trajectory->channels().size() == system.channels.size();
@@ -34,20 +35,21 @@ SimulationOptions thinned_out(SimulationOptions coarse, const System& system, co
 
 bool is_stepped(const RunResult& run) { return run.statistics.storms > 0; }
 
-// Returns true if the reference's own error is small compared with the run's difference, wherever both are known.
+// Returns true if the reference's error is small compared with the difference between run and reference, in all kinds for which both are
+// known.
 bool is_fine_enough(const RunDifference& own, const RunDifference& of_run) {
   for (std::size_t k = 0; k < k_error_kinds; ++k)
     if (!std::isnan(of_run.worst[k].value) && !(own.worst[k].value <= k_most_own_error * of_run.worst[k].value)) return false;
   return true;
 }
 
-// One run of the sequence of tolerances.
+// One of a series of runs with decreasing tolerances.
 struct LadderRun {
   SimulationOptions options;
   RunResult run;
 };
 
-// Returns the reference `fine` with its error estimated from the difference to `coarse`.
+// Returns `fine` as reference, with its error estimated from the difference to `coarse`.
 ReferenceRuns pair_of(const LadderRun& coarse, const LadderRun& fine, std::size_t stride, const System& system,
                       const EventFilter& is_counted) {
   ReferenceRuns pair;
@@ -92,14 +94,14 @@ std::optional<ReferenceRuns> reference_runs(const System& system, const State& i
   std::size_t stride = std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(run.trajectory->size()) / k_fewest_rows));
   SimulationOptions next = options;
   next.integrator = k_method;
-  next.settings.step = 0.0; // chosen by the method; from a very short given step both runs would grow their steps alike
+  next.settings.step = 0.0; // the method chooses its first step; from a very short given one, both runs would increase their steps alike
   next.settings.tolerance = k_first_tolerance;
   LadderRun coarse{thinned_out(next, system, run, stride), {}}, fine;
   std::optional<ReferenceRuns> best;
-  try { // the next run may fail or be too expensive; the earlier ones then decide
+  try { // if the next run fails or is too expensive, the earlier ones are used
     coarse.run = budget.simulate(system, initial, coarse.options, left());
     for (;;) {
-      // Other limits on the steps are divided too. Otherwise both runs would take the same steps and have no difference.
+      // Other limits on the steps are divided as well. Otherwise both runs could take the same steps and have no difference.
       next.settings.division *= k_division;
       next.settings.tolerance *= k_tightening;
       LadderRun finer{next, budget.simulate(system, initial, next, left())};

@@ -23,15 +23,15 @@
 
 namespace steplap {
 
-/// Limit on all finer runs together, as a number of evaluations, so that it does not depend on the computer's speed.
+/// Limit on the evaluations of all finer runs together. Unlike a limit of time, it does not depend on the speed of the computer.
 class EvaluationBudget {
 public:
   explicit EvaluationBudget(double most) : most_(most) {}
 
-  /// Runs the simulation. Throws EvaluationBudgetExceeded if it needs more evaluations than are left, or more than `most_of_run`.
+  /// Simulates a run. Throws EvaluationBudgetExceeded if the run needs more evaluations than are left, or more than `most_of_run`.
   [[nodiscard]] RunResult simulate(const System& system, const State& initial, const SimulationOptions& options,
                                    double most_of_run = std::numeric_limits<double>::infinity());
-  /// Returns the cost of all runs so far, including aborted ones.
+  /// Returns the total cost of all runs so far, including aborted ones.
   [[nodiscard]] const RunStatistics& spent() const { return spent_; }
   /// Returns the number of evaluations left.
   [[nodiscard]] double left() const { return most_ - static_cast<double>(spent_.evaluations); }
@@ -41,19 +41,20 @@ private:
   RunStatistics spent_;
 };
 
-/// Reference run with the estimate of its own error.
+/// A reference run, with an estimate of its own error from a second run at a larger tolerance.
 struct ReferenceRuns {
   SimulationOptions coarse_options, options; ///< options of `coarse` and `reference`
   RunResult coarse, reference;
   std::size_t stride = 1;          ///< `coarse` has every stride-th sample of `reference`
-  double factor = 0.0;             ///< error of the reference over the difference of the two
+  double factor = 0.0;             ///< ratio of the reference's error to the difference of the two runs
   RunDifference own;               ///< error of the reference, scaled as in run_comparison.h
   RunDifference of_run;            ///< difference between the run and the reference, scaled in the same way
-  std::optional<double> parted_at; ///< time from which the two diverge, s
+  std::optional<double> parted_at; ///< time from which the two runs diverge, s
 };
 
-/// Returns the references of `run`, which was made from `initial` with `options`, by fixed steps of a method that locates events. Returns
-/// nothing if they would exceed `most_evaluations` or the budget, if they fail or need time stepping, or if both take the same steps.
+/// Returns the references for `run`, which was made from `initial` with `options`, by fixed steps of a method that locates events. Returns
+/// nothing if the references would exceed `most_evaluations` or the budget, if they fail or need time stepping, or if both take the same
+/// steps.
 [[nodiscard]] std::optional<ReferenceRuns> reference_runs(const System& system, const State& initial, const SimulationOptions& options,
                                                           const RunResult& run, const EventFilter& is_counted, double most_evaluations,
                                                           EvaluationBudget& budget);

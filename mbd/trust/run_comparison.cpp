@@ -12,18 +12,18 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_least_range = 1e-3; // share of the largest range of channels of one kind
-constexpr double k_is_constant = 1e-9; // share of the value; a smaller range is rounding
-// Share of the bodies' size L, m: smaller motions count as none. Errors of positions are absolute to 1e-3 L (Integrator); hundreds of steps
-// at the usual tolerance leave 1e-9 L, a tenth of k_no_motion.
+constexpr double k_least_range = 1e-3; // fraction of the largest range of the channels of one kind
+constexpr double k_is_constant = 1e-9; // fraction of the value; a smaller range is rounding
+// Fraction of the bodies' size L below which motions count as none. Errors of positions are controlled to 1e-3 L (Integrator); hundreds of
+// steps at the usual tolerance leave 1e-9 L, a tenth of this limit.
 constexpr double k_no_motion = 1e-8;
 
 struct Compared {
   const Channel* channel = nullptr;
   ErrorKind kind = ErrorKind::position;
   std::size_t column = 0;
-  double low = 0.0, high = 0.0, size = 0.0; ///< of the reference
-  double arm = 1.0;                         ///< m: factor from angles to lengths, divisor from torques to forces
+  double low = 0.0, high = 0.0, size = 0.0; ///< range and largest absolute value in the reference
+  double arm = 1.0;                         ///< m: factor from angles to lengths, and divisor from torques to forces
   [[nodiscard]] double range() const { return high - low; }
 };
 
@@ -36,7 +36,7 @@ std::optional<ErrorKind> kind_of(const Channel& channel, const std::set<std::str
   return std::nullopt;
 }
 
-// Returns the largest radius of gyration.
+// Returns the largest radius of gyration of the bodies, m.
 double size_of(const System& system) {
   double size = 0.0;
   for (const BodyData& body : system.bodies)
@@ -44,7 +44,7 @@ double size_of(const System& system) {
   return size > 0.0 ? size : 1.0;
 }
 
-// Returns the factor that converts the channel's unit into that of translations of its kind.
+// Returns the factor that converts angles to lengths or torques to forces; 1 for other channels. `size`: size of the bodies, m.
 double arm_of(const Channel& channel, double size) {
   if (channel.unit == "rad" || channel.unit == "rad/s") return size;
   return channel.unit == "N m" ? 1.0 / size : 1.0;
@@ -56,7 +56,8 @@ void widen(Compared& c, double value) {
   c.size = std::max(c.size, std::abs(value));
 }
 
-// Sets the ranges: of the whole run if extremes were located, else over samples. Reads row by row, because trajectories may be on disk.
+// Sets the ranges of all channels: over the whole run if extremes were located, else over samples. The trajectory is read row by row,
+// because it may be on disk.
 void set_ranges(std::vector<Compared>& list, const System& system, const RunResult& run) {
   const Trajectory& reference = *run.trajectory;
   for (std::size_t row = 0; row < reference.size(); ++row) {
@@ -95,7 +96,7 @@ std::vector<Compared> compared_channels(const System& system, const RunResult& r
   return list;
 }
 
-// Scale by kind, in units of translations or forces.
+// Scale of each kind of error, in units of translations or forces.
 using Scales = std::map<ErrorKind, double>;
 
 Scales sizes_of(const std::vector<Compared>& channels) {
@@ -115,7 +116,7 @@ Scales scales_of(const std::vector<Compared>& channels) {
   return range;
 }
 
-bool is_worse(double value, const WorstError& worst) { // not-a-number is worse than anything
+bool is_worse(double value, const WorstError& worst) { // not-a-number is worse than any number
   return !(value <= worst.value) && !std::isnan(worst.value);
 }
 
@@ -134,13 +135,13 @@ double difference(double a, double b) {
   return std::abs(a - b);
 }
 
-// Returns the scale of the channel's error; `size` is the size of the bodies, m.
+// Returns the divisor for the error of the channel; `size` is the size of the bodies, m.
 double scale_of(const Compared& c, const Scales& scales, double size) {
   const double of_kind = std::max(k_least_range * scales.at(c.kind), c.kind == ErrorKind::position ? k_no_motion * size : 0.0);
   return std::max(c.range(), of_kind / c.arm);
 }
 
-// Returns the largest error of every channel with its time. Rows are read one after another, because they may be on disk.
+// Returns the largest error of every channel with its time. The trajectories are read row by row, because they may be on disk.
 std::vector<std::pair<const Compared*, WorstError>> worst_of_channels(const std::vector<Compared>& channels, double size,
                                                                       const Trajectory& mine, const Trajectory& theirs,
                                                                       const RowPairs& rows, const BetweenEvents& between) {
@@ -189,7 +190,7 @@ double RunDifference::largest() const {
 RowPairs::RowPairs(const Trajectory& mine, const Trajectory& theirs, std::size_t stride)
     : stride_(stride), size_(mine.size()), last_(theirs.size() > 0 ? theirs.size() - 1 : 0) {
   if (theirs.size() == 0) size_ = 0;
-  // The last row of a run may lie anywhere. If one run ended earlier, later rows of the other have no partner.
+  // The last row of a run may be at any time. If one run ended earlier, later rows of the other one belong to no row.
   else if (size_ > 0) size_ = std::min(size_, (last_ + stride - 1) / stride + 1);
 }
 
@@ -219,7 +220,7 @@ RunDifference compare_runs(const System& system, const RunResult& run, const Run
   return d;
 }
 
-// Only positions are compared, because velocities and forces of a model at rest are rounding.
+// Only positions are compared, because in a model at rest velocities and forces are rounding.
 std::optional<double> parts_at(const System& system, const RunResult& run, const RunResult& reference, std::size_t stride, double share) {
   const Trajectory &mine = *run.trajectory, &theirs = *reference.trajectory;
   const RowPairs rows(mine, theirs, stride);

@@ -13,7 +13,7 @@ namespace steplap {
 
 namespace {
 
-// Limits relative to the size of the bodies: rounding of coordinates, and gaps of joints that steps left before projection.
+// Limits relative to the size of the bodies: for rounding of coordinates, and for the gaps of joints after a step, before projection.
 constexpr double k_rounded_share = 1e-6, k_open_share = 1e-2;
 
 // Returns the largest radius of gyration, which is the scale of tolerances (Integrator).

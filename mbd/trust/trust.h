@@ -8,7 +8,7 @@
 
 namespace steplap {
 
-/// Returns why the run is not to be trusted and what to try; empty if no reason is known. Reasons are:
+/// Returns the reason why the run cannot be trusted, and what to try; empty if no reason is known. Possible reasons are:
 /// - energy created or lost beyond the errors of the method, by more than a hundredth of the energy exchanged
 ///   (mbd/simulation/energy_account.h);
 /// - joints that a step left wide open, even if projection closed them;

@@ -25,9 +25,9 @@ std::optional<double> event_error(const std::string& element, double t, const Ru
 namespace {
 
 constexpr const char* k_smaller_step = "try a smaller step, or the integrator auto";
-constexpr double k_most_trusted_error = 0.1; // share of the range of positions, and of a slid distance
-// Slid distances at or below the tolerance: share of the largest range of displacements, and of the bodies' size (errors are absolute to
-// 1e-3 of it, Integrator).
+constexpr double k_most_trusted_error = 0.1; // largest error, as a fraction of the range of positions, or of a slid distance
+// Slid distances below these count as none: fractions of the largest range of displacements, and of the bodies' size. Errors are controlled
+// to 1e-3 of that size (Integrator).
 constexpr double k_slide_share = 1e-6, k_size_share = 1e-9;
 
 void set_errors(CriterionResult& c, const System& system, const RunResult& run, const GlobalErrorEstimate& estimate) {
@@ -40,13 +40,13 @@ void set_errors(CriterionResult& c, const System& system, const RunResult& run, 
   }
   if (!c.t || c.t_error) return;
   c.t_error = event_error(c.where, *c.t, run, estimate);
-  if (!c.t_error && *c.t == 0.0) c.t_error = 0.0; // monitored joint that is beyond its limit from the start
+  if (!c.t_error && *c.t == 0.0) c.t_error = 0.0; // a monitored joint that exceeds its limit from the start
   if (c.t_error) return;
-  const ChannelError* usage = find_error(c.where + ".u", system, estimate); // monitored joint: time at which its utilisation passed 1
+  const ChannelError* usage = find_error(c.where + ".u", system, estimate); // monitored joint: time at which utilisation passed 1
   c.t_error = usage ? usage->first_above_one : k_unknown_error;
 }
 
-// Returns the doubt about a criterion as text. `finer`: the same criterion of a finer run.
+// Returns a text on why the result of a criterion is uncertain; "" if it is not. `finer`: the same criterion in a finer run.
 std::string doubt_about(const CriterionResult& c, const CriterionResult& finer) {
   const bool is_met = c.outcome == Verdict::hold;
   const std::string verb = is_met ? "met" : "not met";
@@ -61,7 +61,7 @@ std::string doubt_about(const CriterionResult& c, const CriterionResult& finer) 
 
 // --- slips in one of two runs only
 
-// Slip that only one of the two runs has; the earliest of its element.
+// The earliest slip of an element that slips in only one of the two runs.
 struct LoneSlip {
   std::string element;
   double t = 0.0;
@@ -93,8 +93,8 @@ double largest_channel_range(const std::string& unit, const RunResult& run) {
   return largest;
 }
 
-// Returns true if a slid distance of the element differs clearly between the two runs. Joint friction has no slid distance; its slip rate
-// is compared instead.
+// Returns true if a slid distance of the element differs clearly between the two runs. Friction of joints has no slid distance; its slip
+// rate is compared instead.
 bool changes_slide(const std::string& element, const System& system, const RunResult& run, const RunResult& finer) {
   double size = 0.0;
   for (const BodyData& body : system.bodies)
@@ -121,7 +121,8 @@ bool changes_verdict(const std::string& element, const Judgement& judgement, con
   return false;
 }
 
-// Describes the first slip that only one run has and that matters. Without two agreeing references it is not known which run is right.
+// Returns a text on the first slip that only one run has and that matters. Without two agreeing references it is not known which run is
+// right.
 std::string doubt_about_slips(const Judgement& judgement, const Judgement& finer, const System& system, const RunResult& run,
                               const GlobalErrorEstimate& estimate) {
   for (const LoneSlip& slip : lone_slips(run, estimate.finest)) {
@@ -161,7 +162,7 @@ void weigh_errors(Judgement& judgement, const Model& model, const System& system
       if (c.name == mine.name && c.text == mine.text) return &c;
     return nullptr;
   };
-  const std::string of_slips = doubt_about_slips(judgement, finer, system, run, estimate); // before doubts change the outcomes
+  const std::string of_slips = doubt_about_slips(judgement, finer, system, run, estimate); // before outcomes are changed
   for (std::size_t i = 0; i < judgement.criteria.size(); ++i) {
     CriterionResult& c = judgement.criteria[i];
     set_errors(c, system, run, estimate);

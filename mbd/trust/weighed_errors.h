@@ -11,17 +11,17 @@
 
 namespace steplap {
 
-/// Sets the error of every criterion, and sets those to open that are met only within their error. The run is not to be trusted if its
-/// motion is known to less than a tenth of its range, or if an element slips in the run and sticks in the finer run, or the reverse, and a
-/// verdict or a tenth of a slid distance depends on it.
+/// Sets the error of every criterion, and opens those that are met only within their error. Also sets Judgement::distrust if the motion is
+/// known to less than a tenth of its range, or if an element slips in the run and sticks in the finer run, or the reverse, and a verdict or
+/// a tenth of a slid distance depends on that.
 void weigh_errors(Judgement& judgement, const Model& model, const System& system, const RunResult& run,
                   const GlobalErrorEstimate& estimate);
-/// Sets all criteria that are met to open, because the error of the run could not be estimated.
+/// Opens all criteria that are met, because the error of the run could not be estimated.
 void leave_open(Judgement& judgement, const std::string& why);
 
-/// Returns the error of the channel with that name; nullptr if there is no such channel.
+/// Returns the errors of the channel with this name; nullptr if there is no such channel.
 [[nodiscard]] const ChannelError* find_error(const std::string& channel, const System& system, const GlobalErrorEstimate& estimate);
-/// Returns the error of the time of the element's event at exactly `t`, s; empty if there is no such event.
+/// Returns the error of the time of the element's event at exactly `t`, s; nothing if there is no such event.
 [[nodiscard]] std::optional<double> event_error(const std::string& element, double t, const RunResult& run,
                                                 const GlobalErrorEstimate& estimate);
 
