@@ -112,7 +112,7 @@ void ConstraintSolution::compare(double t) {
 
 namespace {
 
-// Takes the maximum; NaN counts as infinite.
+// Sets `largest` to the larger of the two; a value that is not a number counts as infinite.
 void take_larger(double value, double& largest) {
   if (!(value <= largest)) largest = std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
 }

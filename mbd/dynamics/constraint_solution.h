@@ -2,9 +2,10 @@
 //
 //   J (a_f + W Jᵀλ) = γ,  A = J W Jᵀ   (29)–(31)
 //
-// with W = M⁻¹ for clusters in absolute coordinates; for mechanisms (mechanism.h) the same with their full M⁻¹.
+// with a_f the accelerations by forces alone, γ the bias terms, and W = M⁻¹ for clusters in absolute coordinates; for mechanisms
+// (mechanism.h) the full M⁻¹ takes the place of W.
 //
-// The layout contains the pattern: which rows exist between which clusters, and all constants. multipliers() keeps the result of the last
+// The layout defines the pattern (which rows exist between which clusters) and all constants. multipliers() returns the result of the last
 // solve(); projections use separate arrays.
 #pragma once
 
@@ -26,14 +27,14 @@ public:
   /// `kinematics` provides the motions, and must outlive it.
   explicit ConstraintSolution(const Kinematics& kinematics);
 
-  /// Sets layout and state; both must outlive their use here.
+  /// Sets layout and state, which must exist until the next call of use().
   void use(Layout& layout, const State& state);
 
   // --- evaluation: at the motion placed, for the time of the evaluation ------------------------------
-  /// Computes gradients, bias terms and the factorisation of A, none of which depends on the applied forces.
+  /// Computes gradients, bias terms and the factorisation of A at the present motion. None of these depends on the applied forces.
   void prepare();
-  /// Precondition: prepare(). Solves for λ and adds W Jᵀλ to `a`, the accelerations by forces alone. For mechanisms both are computed from
-  /// `force`.
+  /// Solves for λ at time t and adds W Jᵀλ to `a`, which contains the accelerations by forces alone. The accelerations of mechanisms are
+  /// computed completely, from `force`. Precondition: prepare().
   void solve(double t, const BodyForce* force, double* a);
   /// Returns λ, one number per active row of the layout, N or N m.
   [[nodiscard]] const std::vector<double>& multipliers() const { return multiplier_; }
@@ -41,26 +42,26 @@ public:
   [[nodiscard]] const std::vector<double>& target_rates() const { return target_rate_; }
 
   // --- projection ------------------------------------------------------------------------------------
-  /// Computes gradients and residuals of all rows at the motion placed.
+  /// Computes gradients and residuals of all rows at the present motion and time t.
   void compare(double t);
-  /// Return value − target and rate − target rate, per active row.
+  /// Return value − target, and rate − target rate, for each active row.
   [[nodiscard]] const std::vector<double>& off() const { return off_; }
   [[nodiscard]] const std::vector<double>& rate_off() const { return rate_off_; }
-  /// Returns the largest absolute residuals. Rows left out as dependent are not included; their residual is an event function
-  /// (LoadSharing::discord).
+  /// Returns the largest absolute residuals. Rows that are left out because they depend on others are not included; an event function
+  /// monitors their residuals (LoadSharing::discord).
   [[nodiscard]] Residual residual() const;
   /// Factorises A, with its diagonal increased by the fraction `shift` (damping).
   void factor(double shift = 0.0);
   [[nodiscard]] bool is_factored() const { return is_factored_; }
   void forget_factors() { is_factored_ = false; }
-  /// Computes change −= W Jᵀ A⁻¹ r with one number r per row, so that J change decreases by r.
+  /// Subtracts W Jᵀ A⁻¹ r from `change`, with one number r for each row, so that J · change decreases by r.
   void take_away(const double* r, double* change);
-  /// Returns J change for one row.
+  /// Returns J · change for one row.
   [[nodiscard]] double along(std::size_t row, const double* change) const;
 
   // --- single rows that need not be active -----------------------------------------------------------
-  /// Fills in gradient and inverse masses of one row, or of one part of a longer row, in the coordinates of the clusters. Returns the
-  /// measure, with the bias that belongs to these coordinates.
+  /// Computes gradient and inverse masses of one row, or of one part of a longer row, in the coordinates of the clusters. Returns the
+  /// measure; its bias is that in these coordinates.
   MeasureValue<double> load(const RowSpec& spec, SchurRow& row) const;
 
 private:
@@ -69,8 +70,8 @@ private:
   void solve_multipliers(Mechanism& m, double* a);
   void drive(double t);
   void compare_row(std::size_t r, double t);
-  // Contributions of the further parts of rows over more than two bodies (row_parts.cpp): to γ and gradients, to the residuals, to `right`
-  // −= J a, to the accelerations, and to J change.
+  // Contributions of the further parts of rows over more than two bodies (row_parts.cpp): to γ and gradients, to residuals, to −J a in
+  // `right`, to accelerations, and to J · change.
   void pull_parts();
   void compare_parts();
   void take_part_accelerations(const double* a, double* right) const;

@@ -1,13 +1,13 @@
-// Factorisation of small dense symmetric systems, on doubles or recorded numbers (mbd/tape).
+// Factorisation of small dense symmetric matrices, for doubles or recorded numbers (mbd/tape).
 #pragma once
 
 #include "mbd/system/motion.h"
 
 namespace steplap {
 
-/// Computes m = L D Lᵀ row by row, in place: below the diagonal first L D, then L. `raise(diagonal)` may add damping. `invert(i, d,
-/// diagonal)` returns 1/d, or 0 if row i is to be left out. N is the number of rows if it is known at compile time (loops are unrolled),
-/// otherwise 0.
+/// Factorises m = L D Lᵀ in place, row by row; below the diagonal m contains L D first, then L. raise(diagonal) returns the diagonal with
+/// damping. invert(i, d, diagonal) returns 1/d, or 0 if row i is to be left out. N is the number of rows if it is known at compile time
+/// (loops are then unrolled), otherwise 0.
 template <int N, class S, class Raise, class Invert>
 STEPLAP_INLINE void eliminate_rows(S* m, S* inverse_d, int count, const Raise& raise, const Invert& invert) {
   const int n = N > 0 ? N : count;
@@ -29,7 +29,7 @@ STEPLAP_INLINE void eliminate_rows(S* m, S* inverse_d, int count, const Raise& r
   }
 }
 
-/// x = (L D Lᵀ)⁻¹ x.
+/// Solves L D Lᵀ x = x₀ in place.
 template <int N, class S> STEPLAP_INLINE void substitute(const S* m, const S* inverse_d, int count, S* x) {
   const int n = N > 0 ? N : count;
   for (int i = 1; i < n; ++i)

@@ -9,9 +9,9 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_stays_out = 2.0; // factor on k_dependent for a row that was left out before (hysteresis)
+constexpr double k_stays_out = 2.0; // factor on k_dependent for a row that was left out before
 
-// Orthonormal basis of the rows kept so far: each vector is a row's part independent of those before.
+// Orthonormal basis of the rows kept so far. Each vector is the normalised part of a row that is independent of the rows before it.
 class RowBasis {
 public:
   RowBasis(Eigen::Index dimension, Eigen::Index most) : basis_(dimension, std::min(dimension, most)) {}
@@ -19,7 +19,7 @@ public:
     const auto taken = basis_.leftCols(count_);
     for (int pass = 0; pass < 2; ++pass) row -= taken * (taken.transpose() * row); // the second pass removes rounding of the first
   }
-  // Adds a row orthogonal to the basis. Returns false if the basis already spans the space.
+  // Adds a row that is orthogonal to the basis. Returns false if the basis spans the space already.
   bool take(const VecX& row) {
     if (count_ == basis_.cols()) return false;
     basis_.col(count_++) = row.normalized();
@@ -33,7 +33,7 @@ private:
 
 struct Candidate {
   std::size_t row;
-  double length, allowed; // allowed: share of the length
+  double length, allowed; // `allowed`: fraction of the length
   VecX beyond;
 };
 

@@ -8,10 +8,10 @@ namespace steplap {
 
 namespace {
 
-// Relative pivot below which the rates of a stage are those of the nearest state on the constraints (rates_nearby()).
+// Relative pivot below which a stage uses the rates of the nearest state on the constraints (rates_nearby()).
 constexpr double k_placed_pivot = 1e-4;
 
-// Clusters of several bodies have their force slots after those of links.
+// Returns arrays with additional force slots, after those of links, for clusters of several bodies.
 EvaluationArrays arrays_with_clusters(const System& system) {
   EvaluationArrays arrays(system);
   arrays.force.resize(system.bodies.size() + static_cast<std::size_t>(system.links.slot_count()));
@@ -39,9 +39,9 @@ void Dynamics::set_state(const State& state) {
   pending_.end();
   stage_programs_.leave();
   std::fill(arrays_.event_value.begin(), arrays_.event_value.end(), 1.0);
-  std::fill(arrays_.force.begin(), arrays_.force.end(), BodyForce{}); // bodies on which nothing acts in the new layout keep zero
+  std::fill(arrays_.force.begin(), arrays_.force.end(), BodyForce{}); // so that bodies on which nothing acts have zero force
   const auto [layout, is_new] = layouts_.at(state, choice_);
-  // A layout may have been discarded and computed again in between. It must therefore not keep its load sharing, or results would depend on
+  // The layout may have been discarded and computed again since its last use. If a layout kept its load sharing, results would depend on
   // the size of the cache.
   if (layout_ != &layout) layout.forget_sharing();
   layout_ = &layout;
@@ -72,7 +72,7 @@ void Dynamics::decide_rank() {
     m.decide_rank(layout_->is_friction_row.data() + m.first_row, was_dependent_.data() + m.first_row);
 }
 
-// Rows whose rank was not decided since set_state() keep their entry.
+// Writes the decisions about dependent friction rows to `state`. Rows that were not decided since set_state() keep their entry.
 void Dynamics::record_rank(State& state) const {
   if (layout_->held_rows.empty()) return;
   for (std::size_t r = 0; r < layout_->active.size(); ++r) {
@@ -104,11 +104,11 @@ STEPLAP_INLINE void Dynamics::apply_sliding(std::size_t i) {
   unit.friction->slip_events(evaluation_, friction, rows.rate, &arrays_.event_value[unit.first_event]);
 }
 
-// Computes the forces of all elements on clusters and on their bodies.
+// Computes the forces of all elements on bodies, and sums them over clusters.
 void Dynamics::apply_forces() {
   const Layout& layout = *layout_;
   BodyForce* const force = arrays_.force.data();
-  // Only slots that are added to are cleared, one by one; a single call for all would take longer.
+  // Only slots that receive forces are cleared, one by one; clearing all at once would take longer.
   force[k_ground] = {};
   for (const int slot : layout.slots) force[slot] = {};
   for (const ActiveLink& link : layout.links) force[link.slot] = {};
@@ -133,7 +133,7 @@ void Dynamics::finish_events() {
     find_sharing();
     is_rank_new_ = false;
   }
-  const LoadSharing* const shared = sharing(); // event functions of elements that share a load are evaluated at the ends of steps
+  const LoadSharing* const shared = sharing(); // the event functions of elements that share a load are evaluated at the ends of steps only
   const auto contact_point_event = [this](int f) {
     const FrictionUnit& unit = system_.frictions[f];
     arrays_.event_value[unit.slot(FrictionWatch::contact_point)] = unit.friction->contact_point_event(evaluation_, state_->friction[f]);
@@ -194,7 +194,7 @@ STEPLAP_INLINE void Dynamics::begin_rates(double t, const double* y, double* dy)
   }
 }
 
-// Writes the rates of the coordinates: from y, or as drives prescribe.
+// Writes the rates of the coordinates to dy: from y, or from drives for locked coordinates.
 STEPLAP_INLINE void Dynamics::put_place_rates(const double* y, double* dy) const {
   std::copy_n(y + coordinate_count(), coordinate_count(), dy);
   for (std::size_t i = 0; i < layout_->locks.size(); ++i)
@@ -218,7 +218,7 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   finish_rates(y, dy);
 }
 
-// Not inlined: few scenes have driven rows.
+// Writes the targets of driven rows to `into`. Not inlined, since few models have driven rows.
 [[gnu::noinline]] static void take_row_inputs(const Layout& layout, const RowBase* bases, double t, double* into) {
   for (const int r : layout.driven_rows) {
     const SignalJet target = row_target(*layout.active[r].spec, bases, t);
@@ -238,7 +238,7 @@ void Dynamics::take_time_inputs(double t, double* into) {
 }
 
 // Computes rates, powers and event functions by machine code; with `all` also the data for evaluate_joint_events_by_code() and
-// defer_byproducts(). Returns false, without any change, if no code is valid here.
+// defer_byproducts(). Returns false, with results unchanged, if there is no code or if it is not valid at this state.
 bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
   StageProgram* const program = stage_programs_.now();
   if (!program || !program->is_ready() || !(layout_->smallest_pivot() >= k_traced_pivot)) return false;
@@ -259,15 +259,15 @@ void Dynamics::evaluate_stage(double t, const double* y, double* dy) {
 
 void Dynamics::evaluate_stage_without_code(double t, const double* y, double* dy) {
   rates(t, y, dy);
-  // A projection starts with the factors of the last evaluation. They are discarded so that results do not depend on whether that was made
-  // by code.
+  // A projection would start with the factors of this evaluation, which an evaluation by code does not have. They are discarded, so that
+  // results do not depend on the use of code.
   if (layout_->smallest_pivot() >= k_traced_pivot) rows_.forget_factors();
   count_stage(t, y, dy);
 }
 
 void Dynamics::evaluate_stage_and_joints(double t, const double* y, double* dy, bool always) {
   if (!needs_rigid_joint_events(always)) {
-    if (run_code(t, y, dy, false)) return; // where code is valid no loads are shared
+    if (run_code(t, y, dy, false)) return; // loads are never shared while code is in use
     evaluate_stage_without_code(t, y, dy);
     evaluate_rigid_joint_events_if_near_limit(dy, always);
   } else if (may_evaluate_joint_events_by_code() && run_code(t, y, dy, true)) {
@@ -299,15 +299,15 @@ bool Dynamics::may_evaluate_joint_events_by_code() const {
   return program && program->is_ready() && program->has_joint_wrenches() && !sharing();
 }
 
-// After a stage by code: computes the event functions of merged joints. Returns true if one is near its limit.
+// Computes the event functions of merged joints after a stage by code. Returns true if one of them is near its limit.
 bool Dynamics::evaluate_joint_events_by_code(const StageProgram& program, double t) {
-  // A stick in a cluster is judged by its wrench, the time and the friction state.
+  // Joints inside clusters need only their wrench, the time and the friction state.
   evaluation_.t = std::min(t, time_cap_);
   program.put_wrenches(friction_force_);
   return evaluate_wrench_events();
 }
 
-// Counts a stage evaluated without code, and records it if code will pay.
+// Counts a stage evaluated without code, and records it if compiled code is likely to repay the effort.
 void Dynamics::count_stage(double t, const double* y, const double* dy) {
   StageProgram* const program = stage_programs_.now();
   if (!program) return;
@@ -325,7 +325,7 @@ void Dynamics::defer_byproducts(const StageProgram& program, double t, const dou
   pending_.begin(std::min(t, time_cap_), y, dimension(), program.smallest_pivot());
 }
 
-// Not counted in evaluations(), because the count must not depend on the use of code.
+// Computes the pending by-products. Not counted in evaluations(), which must not depend on the use of code.
 void Dynamics::evaluate_byproducts() {
   --evaluations_;
   rates_at(pending_.t(), pending_.y(), pending_.dy());
@@ -359,7 +359,7 @@ void Dynamics::evaluate_rigid_joint_events_if_near_limit(const double* dy, bool 
 
 bool Dynamics::has_groups() const { return !sharing()->groups().empty(); }
 
-// Computes the event functions of merged joints and groups. Returns true if one is near its limit.
+// Computes the event functions of merged joints and of load-sharing groups. Returns true if one of them is near its limit.
 bool Dynamics::evaluate_joint_events(const double* dy) {
   ensure_byproducts();
   kinematics_.complete();
@@ -373,7 +373,7 @@ bool Dynamics::evaluate_joint_events(const double* dy) {
   return evaluate_wrench_events() || is_group_near;
 }
 
-// Computes the event functions of merged joints from their wrenches. Returns true if one is near its limit.
+// Computes the event functions of merged joints from their wrenches. Returns true if one of them is near its limit.
 bool Dynamics::evaluate_wrench_events() {
   bool is_near = false;
   for (const int f : layout_->merged) {

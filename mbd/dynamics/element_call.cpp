@@ -10,8 +10,8 @@ namespace steplap {
 
 namespace {
 
-// Motion of bodies that the call does not transfer. An element that reads one nevertheless gets NaN; the recorded results then differ, and
-// the code is not used (StageProgram::record).
+// Returns NaN as the motion of bodies that the call does not transfer. If an element reads such a body nevertheless, the recorded results
+// differ from the evaluation, and the code is not used (StageProgram::record).
 Motion<double> unknown_motion() {
   constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
   return {k_nan, k_nan, k_nan, k_nan, k_nan, k_nan, k_nan, k_nan};
@@ -27,7 +27,7 @@ ElementCall::ElementCall(const System& system, const Evaluation& live)
   own_.inner = inner_.data();
 }
 
-// Passes a number to the call: a constant is stored once, a variable becomes an argument.
+// Passes a number to the call, which finds it at `place`: a constant is stored once, a variable becomes an argument.
 void ElementCall::take(const TapeNumber& x, double& place) {
   place = value_of(x);
   if (x.is_constant()) return;
@@ -51,14 +51,14 @@ void ElementCall::give(TapeNumber& x, const double& place) {
   found_.push_back(&place);
 }
 
-// A sum is passed with its previous value, so that terms are added in the same order as without code.
+// Lets the call add to x. The present value of x is passed, so that terms are added in the same order as without code.
 void ElementCall::add_to(TapeNumber& x, double& place) {
   take(x, place);
   if (x.is_constant()) constants_.push_back({&place, place});
   give(x, place);
 }
 
-// Returns the slots of these bodies, and of the links between them.
+// Returns the slots of the marked bodies, and of the links between them.
 std::vector<int> ElementCall::slots_of(const std::vector<char>& is_used) const {
   std::vector<int> slots;
   for (int body = 0; body < system_.body_count(); ++body)
@@ -71,7 +71,7 @@ std::vector<int> ElementCall::slots_of(const std::vector<char>& is_used) const {
   return slots;
 }
 
-// Time is always an argument, so that no call has only constant arguments.
+// Passes time and the motions of the marked bodies. Time is always an argument, so that no call has only constant arguments.
 void ElementCall::take_surroundings(const std::vector<char>& is_used, TracedEvaluation& e) {
   take(e.record_signal_input({&clock_signal()}), own_.t);
   for (const int slot : slots_of(is_used)) take(e.motion[slot], motion_[static_cast<std::size_t>(slot)]);
@@ -105,8 +105,8 @@ void ElementCall::trace(const ForceGroup& group, TracedEvaluation& e) {
   put_down();
 }
 
-// Finds the contacts of the group: those whose force is changed by an evaluation. Elements write their normal forces in every evaluation or
-// never.
+// Returns the contacts of the group: those whose normal force an evaluation changes. An element writes its normal forces in every
+// evaluation or never.
 std::vector<std::size_t> ElementCall::contacts_of_group() {
   constexpr double k_untouched = std::numeric_limits<double>::lowest();
   std::fill(arrays_.contact_force.begin(), arrays_.contact_force.end(), k_untouched);
@@ -152,7 +152,7 @@ void ElementCall::put_down() {
   results_.clear();
 }
 
-// Compiled code cannot pass exceptions on; the caller must check has_failed().
+// Executes a recorded call. Compiled code cannot pass exceptions on, so the caller must check has_failed().
 void ElementCall::run(const double* arguments, double* results) {
   ElementCall& call = *std::bit_cast<ElementCall*>(arguments[1]);
   arguments += 2;

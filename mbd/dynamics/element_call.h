@@ -1,9 +1,9 @@
 // Elements whose laws are not templates, on a tape: the tape contains a call of the element's own function for doubles.
 //
-// The call copies the motions of the element's bodies, the sums that it adds to, and the time to the arrays of an Evaluation, and calls
-// ForceGroup::add_forces() or the functions of FrictionElement. One such element therefore does not prevent machine code for the rest of
-// the scene, and its results are bit-identical to those without code. Modes, friction states, anchors and scratch are read from the current
-// evaluation of the thread.
+// The call copies the motions of the element's bodies, the sums to which the element adds, and the time to the arrays of an Evaluation, and
+// calls ForceGroup::add_forces() or the functions of FrictionElement. One such element therefore does not prevent machine code for the rest
+// of the model, and results are bit-identical to those without code. Modes, friction states, anchors and caches are read from the thread's
+// current evaluation.
 #pragma once
 
 #include "mbd/system/evaluation_arrays.h"
@@ -13,21 +13,21 @@
 
 namespace steplap {
 
-/// One recorded call of one element, or of one group.
+/// A recorded call of one friction element, or of one force group.
 class ElementCall {
 public:
-  /// Precondition: a trace has been started (TapeNumber::start). `live` is the evaluation whose modes and memory are read; it must outlive
-  /// the call.
+  /// Precondition: recording has been started (TapeNumber::start). `live`: the evaluation whose modes and caches the call reads; it must
+  /// outlive this object.
   ElementCall(const System& system, const Evaluation& live);
   ElementCall(const ElementCall&) = delete; // the tape's constants point to it
   ElementCall& operator=(const ElementCall&) = delete;
 
-  /// Records group.add_forces(), adding to `e`.
+  /// Records a call of group.add_forces() that adds to `e`.
   void trace(const ForceGroup& group, TracedEvaluation& e);
   /// Records FrictionElement::record_friction() for friction element f.
   void trace(int f, TracedEvaluation& e, const TapeNumber* rate, TapeNumber* wrench, TapeNumber* event_value);
 
-  /// Returns whether the element threw an exception in the last run, and resets this flag. If it did, the results of the run are invalid.
+  /// Returns true if the element threw an exception since the last call of has_failed(). The results of the tape are then invalid.
   [[nodiscard]] bool has_failed() { return std::exchange(has_failed_, false); }
 
 private:
@@ -49,7 +49,7 @@ private:
 
   const System& system_;
   const Evaluation& live_;
-  const ForceGroup* group_ = nullptr; ///< null: a friction element
+  const ForceGroup* group_ = nullptr; ///< null: the call is that of a friction element
   int friction_ = 0;
   bool is_sliding_ = false;
   Evaluation own_;
@@ -60,7 +60,7 @@ private:
   std::vector<double*> places_;       ///< addresses of the arguments; the first argument of the call is the address of this object
   std::vector<Constant> constants_;   ///< initial values of the sums that are constants
   std::vector<const double*> found_;  ///< addresses of the results
-  std::vector<TapeNumber> arguments_; ///< only while recording, as `results_`
+  std::vector<TapeNumber> arguments_; ///< used only while recording, like `results_`
   std::vector<TapeNumber*> results_;
   bool has_failed_ = false;
 };

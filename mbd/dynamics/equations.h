@@ -1,9 +1,9 @@
-// The equations of one evaluation as templates, on doubles or on recorded numbers (mbd/tape):
+// The equations of one evaluation as templates, for doubles or recorded numbers (mbd/tape):
 //
 //   M a = Q(q, v, t) + Jᵀλ,  J a = γ            (27), (29)–(31)
 //
-// The functions are listed in the order in which Dynamics::rates_at and the tracer (traced_evaluation.cpp) call them. The layout defines
-// the indices; the caller owns the arrays: motions and forces per slot, gradients, γ and multipliers per active row, accelerations per
+// The functions are in the order in which Dynamics::rates_at and the tracer (traced_evaluation.cpp) call them. The layout defines all
+// indices. The caller owns the arrays: motions and forces per slot; gradients, γ and multipliers per active row; accelerations per
 // coordinate. The caller also solves for the multipliers and manages factorisations (schur.h, mechanism.h).
 #pragma once
 
@@ -29,7 +29,7 @@ template <class S> STEPLAP_INLINE void place_in_cluster(const Placement& place, 
   m.omega = k.omega;
 }
 
-/// Computes the motions of those listed bodies whose motion differs from that of their cluster.
+/// Computes the motions of the listed bodies, whose motions differ from those of their clusters.
 template <class S> STEPLAP_INLINE void place_members(const Layout& layout, const std::vector<int>& members, Motion<S>* motion) {
   for (const int i : members) {
     const Placement& place = layout.placements[i];
@@ -47,15 +47,15 @@ template <class S> STEPLAP_INLINE void place_cluster(const S* q, const S* v, Mot
   set_angle(m, q[2]);
 }
 
-/// Sets a coordinate that a drive prescribes.
+/// Sets a coordinate that a drive prescribes, and its rate, in the motion of a cluster.
 template <class S> STEPLAP_INLINE void place_locked(int coordinate, const S& value, const S& rate, Motion<S>& m) {
   if (coordinate == 2) set_angle(m, value);
   else (coordinate == 0 ? m.x : m.y) = value;
   (coordinate == 0 ? m.vx : coordinate == 1 ? m.vy : m.omega) = rate;
 }
 
-/// Computes all motions that forces and rows need from coordinates q and rates v of the layout. Precondition: mechanisms are placed.
-/// `target(i)` returns value, rate and acceleration of lock i.
+/// Computes all motions that forces and rows need, from the coordinates q and rates v of the layout. target(i) returns the prescribed
+/// value, rate and acceleration of lock i. Precondition: the motions of mechanisms are computed.
 template <class S, class F>
 STEPLAP_INLINE void place_all(const Layout& layout, const S* q, const S* v, const F& target, Motion<S>* motion) {
   for (int k = 0; k < layout.absolute_count; ++k) place_cluster(q + 3 * k, v + 3 * k, motion[layout.slots[k]]);
@@ -76,14 +76,14 @@ template <class S> struct SlidingRows {
   MeasureValue<S> measure[3];
   S rate[3];
 
-  /// `motion`: of body a relative to b.
+  /// `motion` is that of body a relative to body b.
   STEPLAP_INLINE SlidingRows(const RowSpec* rows, int count_, const Motion<S>& motion) : count(count_) {
     for (int r = 0; r < count; ++r) {
       measure[r] = evaluate_row<false>(rows[r], motion, Origin{});
       rate[r] = measure[r].rate;
     }
   }
-  /// Adds the wrench of the slip law to the link, and the dissipated power −w·rate.
+  /// Adds the slip law's wrench w to the force on the link, and the power −w·rate to `dissipation`.
   STEPLAP_INLINE void pull(const S* wrench, BodyForceOf<S>& link_force, S& dissipation) const {
     for (int r = 0; r < count; ++r) {
       apply_force(link_force, measure[r], wrench[r]);
@@ -92,8 +92,8 @@ template <class S> struct SlidingRows {
   }
 };
 
-/// Adds the forces on links to their bodies, and those on bodies to their clusters. Forces that are certainly zero are skipped: links used
-/// only by rows, or with open contacts only.
+/// Adds the forces on links to those on their bodies, and the forces on bodies to those on their clusters. Forces that are zero in this
+/// layout are skipped: links that only rows use, or with open contacts only.
 template <class S> STEPLAP_INLINE void gather_forces(const Layout& layout, const Motion<S>* motion, BodyForceOf<S>* force) {
   for (const ActiveLink& link : layout.links) {
     const BodyForceOf<S>& f = force[link.slot];
@@ -108,7 +108,8 @@ template <class S> STEPLAP_INLINE void gather_forces(const Layout& layout, const
 
 // --- accelerations ------------------------------------------------------------------------------------
 
-/// Computes a = W (m g + Q) for clusters in absolute coordinates, (27) without rows, and sets the prescribed accelerations.
+/// Computes a = W (m g + Q) for clusters in absolute coordinates, (27) without rows, and sets the accelerations of locked coordinates,
+/// which target(i) returns for lock i.
 template <class S, class F>
 STEPLAP_INLINE void accelerate_clusters(const Layout& layout, const BodyForceOf<S>* force, const F& target, S* a) {
   const double *weight = layout.weight.data(), *w = layout.inverse_mass.data();
@@ -123,14 +124,14 @@ STEPLAP_INLINE void accelerate_clusters(const Layout& layout, const BodyForceOf<
     a[3 * layout.locks[i].cluster + layout.locks[i].coordinate] = target(i).acceleration;
 }
 
-/// Fills in the gradients of the rows `first` ≤ r < `end` and computes their γ (29).
+/// Computes the gradients of the rows `first` ≤ r < `end`, and their γ (29).
 template <class S>
 STEPLAP_INLINE void pull_rows(const Layout& layout, std::size_t first, std::size_t end, const Motion<S>* motion, SchurRowOf<S>* rows,
                               S* gamma) {
   for (std::size_t r = first; r < end; ++r) gamma[r] = pull_row(layout, layout.active[r], motion, rows[r]);
 }
 
-/// Subtracts J a from γ, with `cluster_a` the accelerations without rows (30).
+/// Subtracts J a from γ, with a = `cluster_a` the accelerations without rows (30).
 template <class S>
 STEPLAP_INLINE void take_accelerations(const SchurRowOf<S>* rows, std::size_t first, std::size_t end, const S* cluster_a, S* gamma) {
   for (std::size_t r = first; r < end; ++r) gamma[r] = less_accelerations(rows[r], gamma[r], cluster_a);
@@ -138,8 +139,8 @@ STEPLAP_INLINE void take_accelerations(const SchurRowOf<S>* rows, std::size_t fi
 
 // --- power --------------------------------------------------------------------------------------------
 
-/// Returns the driving force of a locked coordinate, from the equation of motion of its cluster. `f` is the force on the cluster; `lambda`
-/// and `rows` are per active row.
+/// Returns the force of the drive on a locked coordinate, from the equation of motion of its cluster. `f`: force on the cluster; `lambda`
+/// and `rows` per active row.
 template <class S>
 [[nodiscard]] STEPLAP_INLINE S missing_force(const Layout& layout, const Lock& lock, const BodyForceOf<S>& f, const S* a,
                                              const SchurRowOf<S>* rows, const S* lambda) {
@@ -153,7 +154,7 @@ template <class S>
   return force;
 }
 
-/// Adds the power of drives to `work`: multiplier times prescribed rate. `row_rate(i)` is that of driven row i, `target(i)` that of lock i.
+/// Adds the power of drives to `work`: force times prescribed rate. row_rate(i) returns the rate of driven row i, target(i) that of lock i.
 template <class S, class R, class F>
 STEPLAP_INLINE void add_power_of_drives(const Layout& layout, const BodyForceOf<S>* force, const SchurRowOf<S>* rows, const S* lambda,
                                         const S* a, const R& row_rate, const F& target, S& work) {

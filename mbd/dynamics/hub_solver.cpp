@@ -9,11 +9,10 @@ namespace steplap {
 
 namespace {
 
-// With fewer rows at one body A is cheap. The limit also excludes all systems that can be recorded (SchurSolver::can_be_traced), which must
-// have a single way of solution.
+// Least number of rows at a hub. With fewer rows A is cheap to factorise. The limit also excludes all systems that can be recorded
+// (SchurSolver::can_be_traced), which need a single method of solution.
 constexpr int k_fewest_rows = 32;
-// Smaller relative pivots are left to SchurSolver. Above it B loses at most two digits compared with A, and the pose is not near a singular
-// position.
+// Least relative pivot for this method. Above it, B loses at most two digits compared with A, and the pose is not near a singular position.
 constexpr double k_least_pivot = 0.05;
 
 std::vector<int> rows_at_bodies(const std::vector<SchurRow>& rows, int count) {
@@ -43,7 +42,7 @@ std::unique_ptr<HubSolver> HubSolver::of(const std::vector<SchurRow>& rows, int 
   if (hubs == 0 || hubs > k_most_hubs) return nullptr;
   const auto is_hub = [&](int body) { return body < 0 || hub_of[body] >= 0; };
   for (int r = 0; r < count; ++r) {
-    if (rows[r].body[0] == rows[r].body[1]) return nullptr; // within one body: coupled to nothing
+    if (rows[r].body[0] == rows[r].body[1]) return nullptr; // a row inside one body is coupled to no other
     if (is_hub(rows[r].body[0]) && is_hub(rows[r].body[1])) ++outer;
   }
   if (outer > k_most_outer) return nullptr;
@@ -73,7 +72,7 @@ HubSolver::HubSolver(const std::vector<SchurRow>& rows, int count, const std::ve
   right_.assign(inner_.size(), 0.0);
 }
 
-// Writes the row's gradient by the coordinates of the hubs, a row of U.
+// Adds the row's gradient by the coordinates of the hubs, which is a row of U, to `of_coordinates`.
 void HubSolver::add_sides(const SchurRow& row, double* of_coordinates) const {
   for (int side = 0; side < 2; ++side) {
     const int hub = row.body[side] < 0 ? -1 : hub_of_[row.body[side]];
@@ -82,7 +81,7 @@ void HubSolver::add_sides(const SchurRow& row, double* of_coordinates) const {
   }
 }
 
-// Fills in B and U. Returns the smallest ratio of the diagonals of B and A.
+// Computes B and U. Returns the smallest ratio of a diagonal element of B to that of A.
 double HubSolver::take_numbers(const std::vector<SchurRow>& rows) {
   const std::size_t n = inner_.size();
   double least = 1.0;
@@ -125,7 +124,7 @@ bool HubSolver::factor(const std::vector<SchurRow>& rows) {
   return smallest_pivot_ >= k_least_pivot;
 }
 
-// Computes the end system: W⁻¹ + Uᵀ B⁻¹ U, and below it the outer rows.
+// Computes the end system: W⁻¹ + Uᵀ B⁻¹ U, and below it the rows of U for outer rows.
 void HubSolver::fill_end() {
   const std::size_t n = inner_.size();
   const int hubs = 3 * hub_count_, ends = hubs + static_cast<int>(outer_.size());
@@ -139,7 +138,7 @@ void HubSolver::fill_end() {
     for (int d = 0; d <= o; ++d) end_[o * ends + d] = d < hubs ? outer_seen_[o - hubs][d] : 0.0;
 }
 
-// Factorises the end system. Returns the smallest pivot of an outer row, relative to its diagonal element of A.
+// Factorises the end system. Returns the smallest pivot of an outer row, relative to the row's diagonal element of A.
 double HubSolver::eliminate_end() {
   const int hubs = 3 * hub_count_, ends = hubs + static_cast<int>(outer_.size());
   double least = 1.0;

@@ -1,16 +1,16 @@
-// Constraint equations for scenes in which many rows meet at few bodies, for example all elements on one deck.
+// Solver of the constraint equations for models in which many rows act on a few bodies, for example if all elements are on one deck.
 //
-// Such a body makes A = J W Jᵀ dense, and factorisation costs O(rows³). Call these few bodies hubs. Without them few rows are coupled: A =
-// B + U W Uᵀ, where B is the matrix for the other bodies and the few columns of U are the gradients by the coordinates of the hubs. With z
-// = W Uᵀ λ, the accelerations of the hubs due to λ,
+// Such a body makes A = J W Jᵀ dense, and its factorisation costs O(rows³). These few bodies are called hubs. Without them, few rows are
+// coupled: A = B + U W Uᵀ, where B is the matrix for the other bodies, and the few columns of U are the gradients by the coordinates of the
+// hubs. With z = W Uᵀ λ, the accelerations of the hubs due to λ,
 //
 //   B λ + U z = r,    W⁻¹ z = Uᵀ λ,    so that    (W⁻¹ + Uᵀ B⁻¹ U) z = Uᵀ B⁻¹ r,    λ = B⁻¹ (r − U z),
 //
-// at a cost proportional to the number of rows. Rows between hubs and the ground only have zero entries in B; they are solved together with
-// z in the small dense system at the end ("outer" rows).
+// at a cost proportional to the number of rows. Rows that act only on hubs and the ground have zero entries in B. These "outer" rows are
+// solved together with z in the small dense system at the end.
 //
-// The accuracy of B λ = r − U z decreases with the ratio of B to A. The method is therefore refused, and SchurSolver solves for A itself,
-// if the hubs dominate the diagonal of a row, if rows become nearly dependent once the hubs are fixed, or if rows are left out.
+// The accuracy of B λ = r − U z decreases with the ratio of B to A. SchurSolver therefore solves for A itself if the hubs dominate the
+// diagonal of a row, if rows become nearly dependent once the hubs are fixed, or if rows are left out.
 #pragma once
 
 #include "mbd/dynamics/schur.h"
@@ -21,17 +21,16 @@
 
 namespace steplap {
 
-/// Solver for rows of which many meet at few bodies; a part of SchurSolver.
+/// Solver for rows many of which act on a few bodies; a part of SchurSolver.
 class HubSolver {
 public:
-  /// Returns null if there are no hubs, or too many.
+  /// Returns a solver for the first `count` rows; null if there are no hubs, or too many.
   [[nodiscard]] static std::unique_ptr<HubSolver> of(const std::vector<SchurRow>& rows, int count);
-  /// Factorises. Returns false if the numbers make the method inaccurate. Does not allocate.
+  /// Factorises the equations. Returns false if this method would be inaccurate for these rows. Does not allocate.
   [[nodiscard]] bool factor(const std::vector<SchurRow>& rows);
-  /// In place: x = A⁻¹ x. Precondition: factor() returned true.
+  /// Solves A x = x₀ in place. Precondition: factor() returned true.
   void solve(double* x) const;
-  /// Returns a lower bound of all relative pivots of A, as SchurSolver::smallest_pivot(), for elimination in B's order with outer rows
-  /// last.
+  /// Returns a lower bound of all relative pivots of A (SchurSolver::smallest_pivot()) in the elimination order of B, with outer rows last.
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; }
 
 private:
@@ -46,8 +45,8 @@ private:
 
   int hub_count_ = 0;
   std::vector<int> hub_of_;                             ///< per body: index of the hub, or −1
-  std::vector<int> inner_, outer_;                      ///< inner: rows that involve another body than hubs and ground; outer: all others
-  std::vector<SchurRow> numbers_;                       ///< inner rows without their hub side
+  std::vector<int> inner_, outer_;                      ///< inner_: rows that act on a body other than hubs and ground; outer_: all others
+  std::vector<SchurRow> numbers_;                       ///< inner rows, with the ground in place of the hub
   SchurSolver solver_;                                  ///< B
   std::vector<double> seen_, moved_;                    ///< U and B⁻¹ U, one number per inner row, stored by columns
   std::array<double, 3 * k_most_hubs> stiffness_{};     ///< W⁻¹; 1 for a locked coordinate, whose column in U is zero

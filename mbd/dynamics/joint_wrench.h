@@ -1,6 +1,6 @@
-// Wrenches in the rigid joints inside clusters, by the Newton–Euler method from the leaves of each cluster to its root, in its axes: a
-// joint carries the wrench missing in the equations of motion of the bodies beyond it. Templates over double and recorded numbers
-// (mbd/tape).
+// Wrenches in the rigid joints inside clusters, in the axes of the cluster. By the Newton–Euler method, from the leaves of each cluster to
+// its root: the inertial wrench of a body minus the known forces on it must come from its joint to the parent. Templates for doubles and
+// recorded numbers (mbd/tape).
 #pragma once
 
 #include "mbd/dynamics/layout.h"
@@ -12,8 +12,8 @@ namespace steplap {
 /// Computes the geometry of all joints inside clusters for the present contact points and anchors, one entry per edge.
 void compute_edge_geometry(const System& system, const Layout& layout, const State& state, std::vector<EdgeGeometry>& edges);
 
-/// Returns the wrench missing in the equation of motion of a member of a cluster: m (R a_c + α ẑ×r − ω² r − g) minus the forces on it, with
-/// R the rotation to the cluster's axes. `k` and `a` are motion and accelerations of the cluster, `f` is the force on the member.
+/// Returns the wrench that joints must exert on a member of a cluster: its inertial wrench m (R a_c + α ẑ×r − ω² r − g) minus the force f
+/// on it, with R the rotation to the cluster's axes. `k` and `a` are motion and accelerations of the cluster.
 template <class S>
 STEPLAP_INLINE BodyForceOf<S> member_lack(const BodyData& body, const Placement& place, const Vec2& gravity, const Motion<S>& k, const S* a,
                                           const BodyForceOf<S>& f) {
@@ -24,7 +24,7 @@ STEPLAP_INLINE BodyForceOf<S> member_lack(const BodyData& body, const Placement&
   return {at_centre.x - turning * y - centripetal * x, at_centre.y + turning * x - centripetal * y, body.inertia * a[2] - f.m};
 }
 
-/// Subtracts the force of an active row, or of a part of one, from the missing wrenches of its bodies.
+/// Subtracts the force of an active row, or of one part of it, from the wrenches that joints must exert on the row's bodies.
 template <class S>
 void take_carried(const Layout& layout, const RowSpec& spec, const S& lambda, const Motion<S>* motion, BodyForceOf<S>* lack) {
   const int body[2] = {spec.a, spec.b};
@@ -42,8 +42,8 @@ void take_carried(const Layout& layout, const RowSpec& spec, const S& lambda, co
   }
 }
 
-/// Computes the missing wrench of each member of a cluster that a joint carries, per body: inertia minus forces minus active rows.
-/// `cluster_a` has 3 numbers per cluster, `lambda` one per active row.
+/// Computes, for each member of a cluster that a joint carries, the wrench that joints must exert on it: inertia minus forces minus active
+/// rows. `cluster_a` has 3 numbers per cluster, `lambda` one per active row.
 template <class S>
 void find_lacks(const System& system, const Layout& layout, const Motion<S>* motion, const BodyForceOf<S>* force, const S* cluster_a,
                 const S* lambda, BodyForceOf<S>* lack) {
@@ -56,8 +56,8 @@ void find_lacks(const System& system, const Layout& layout, const Motion<S>* mot
     for (const RowSpec* part = layout.active[r].spec; part; part = part->next) take_carried(layout, *part, lambda[r], motion, lack);
 }
 
-/// Passes the missing wrenches from children to parents. Calls bears(edge, along) with the wrench of each joint on the rows' body a about
-/// the joint's point, along its rows (two axes fixed in b, then the angle).
+/// Adds these wrenches up from children to parents. Calls bears(edge, along) for each joint, with its wrench on the rows' body a about the
+/// joint's point, along the joint's rows (two axes fixed in b, then the angle).
 template <class S, class F>
 STEPLAP_INLINE void hand_on_lack(const Layout& layout, const std::vector<EdgeGeometry>& edges, BodyForceOf<S>* lack, const F& bears) {
   for (std::size_t e = 0; e < layout.edges.size(); ++e) {

@@ -5,7 +5,7 @@
 namespace steplap {
 
 Kinematics::Kinematics(const System& system) : system_(system) {
-  motion_.resize(system.bodies.size() + system.links.slot_count()); // upper bound: every body forms a separate cluster
+  motion_.resize(system.bodies.size() + system.links.slot_count()); // an upper bound, reached if every body is a cluster
 }
 
 void Kinematics::use(Layout& layout, const State& state) {

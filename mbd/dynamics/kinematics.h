@@ -1,7 +1,7 @@
-// Motions of clusters, links and bodies at one time for one set of coordinates, the first of the three parts of Dynamics.
+// Motions of clusters, links and bodies at one time and for one set of coordinates; the first of the three parts of Dynamics.
 //
-// place() computes only the motions that forces and rows need. The other bodies of clusters, for example parts of a core that stick
-// together, are computed by complete(), which must be called before all bodies are read.
+// place() computes only the motions that forces and rows need. The motions of other bodies in clusters, for example parts of a core that
+// stick together, are computed by complete(), which must be called before the motions of all bodies are read.
 #pragma once
 
 #include "mbd/dynamics/equations.h"
@@ -12,27 +12,27 @@
 
 namespace steplap {
 
-/// Computes motions from the coordinates of a layout. It does not allocate after construction.
+/// Computes motions from the coordinates of a layout. Does not allocate after construction.
 class Kinematics {
 public:
-  /// `system` must outlive it. use() must be called before any other function.
+  /// `system` must outlive this object. use() must be called before any other function.
   explicit Kinematics(const System& system);
   Kinematics(const Kinematics&) = delete; // others keep pointers into its arrays
   Kinematics& operator=(const Kinematics&) = delete;
 
-  /// Sets layout and state, which must outlive their use here. Motions placed before become invalid.
+  /// Sets layout and state, which must exist until the next call of use(). The present motions become invalid.
   void use(Layout& layout, const State& state);
 
   /// Computes motions at time t from the layout's coordinates q and rates v.
   void place(double t, const double* q, const double* v);
-  /// Returns true if these arguments were the last given to place(). y contains q, then v.
+  /// Returns true if the present motions are those at t and y, which contains q, then v.
   [[nodiscard]] bool is_placed(double t, const double* y) const;
-  /// Computes the motions of bodies that place() has omitted.
+  /// Computes the motions that place() has omitted.
   void complete() {
     if (!is_complete_) place_rest();
   }
 
-  /// Computes the prescribed values of locked coordinates at t; a repeated call with the same t costs nothing.
+  /// Computes the prescribed values of locked coordinates at t. Costs nothing if t is that of the last call.
   void aim_locks(double t);
   [[nodiscard]] const SignalJet& lock_target(std::size_t lock) const { return lock_target_[lock]; }
   [[nodiscard]] std::span<const SignalJet> lock_targets() const { return {lock_target_.data(), layout_->locks.size()}; }
@@ -49,7 +49,7 @@ private:
   std::vector<Motion<double>> motion_;
   std::vector<SignalJet> lock_target_; ///< per lock, at lock_time_
   double lock_time_ = std::numeric_limits<double>::quiet_NaN();
-  double time_ = std::numeric_limits<double>::quiet_NaN(); ///< time of motion_
+  double time_ = std::numeric_limits<double>::quiet_NaN(); ///< time of the motions in motion_
   bool is_complete_ = false;
 };
 

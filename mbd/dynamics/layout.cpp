@@ -12,7 +12,7 @@ namespace steplap {
 
 namespace {
 
-// Distance below which two centres of gravity coincide, m: rounding error of sums of metres.
+// Distance below which two centres of gravity coincide, m: the rounding error of sums of metres.
 constexpr double k_same_place = 1e-14;
 
 // A rigid joint that may merge its two bodies, with its row block or friction element.
@@ -22,7 +22,7 @@ struct RigidJoint {
 
 bool is_stuck(const State& state, int f) { return state.friction[f].phase == FrictionPhase::stick; }
 
-// `frictions` are the friction elements that merge their bodies.
+// Returns all rigid joints: welds, and the friction elements listed in `frictions`, which merge their bodies.
 std::vector<RigidJoint> rigid_joints(const System& system, const State& state, const std::vector<int>& frictions) {
   std::vector<RigidJoint> joints;
   for (int i = 0; i < static_cast<int>(system.row_blocks.size()); ++i) {
@@ -42,7 +42,7 @@ int find_root(std::vector<int>& parent, int i) {
   return i;
 }
 
-// Merges bodies. Returns for each joint whether it is in the spanning forest (the ground excluded); the others remain rows.
+// Merges bodies. Returns for each joint whether it belongs to the spanning forest, without the ground. The others remain rows.
 std::vector<char> merge(const System& system, const std::vector<RigidJoint>& joints, std::vector<int>& parent) {
   parent.resize(system.bodies.size());
   std::iota(parent.begin(), parent.end(), 0);
@@ -104,11 +104,11 @@ void make_clusters(const System& system, const State& state, std::vector<int>& p
   }
 }
 
-// Assigns slots to the motions of clusters: that of a body with the same motion, otherwise a new one after those of links.
+// Assigns slots to the motions of clusters: the slot of a body with the same motion, otherwise a new one after those of links.
 void find_slots(const System& system, Layout& layout) {
   int extra = system.links.slot_count();
   for (Cluster& cluster : layout.clusters) {
-    // The root body often lies at the common centre of gravity, for example with limbs on both sides of a core.
+    // The root body is often at the common centre of gravity, for example if limbs are on both sides of a core.
     Placement& root = layout.placements[cluster.root];
     if (root.offset.norm() < k_same_place) root.is_trivial = true;
     cluster.motion = root.is_trivial ? cluster.root : extra++;
@@ -117,7 +117,7 @@ void find_slots(const System& system, Layout& layout) {
   layout.slot_count = extra;
 }
 
-// Lists the edges of the spanning tree of each cluster, leaves first (reverse of breadth-first order from the root).
+// Lists the edges of the spanning tree of each cluster, leaves first, as the reverse of breadth-first order from the root.
 void order_edges(const std::vector<RigidJoint>& joints, const std::vector<char>& is_merged, int body_count, Layout& layout) {
   std::vector<std::vector<std::size_t>> at_body(body_count);
   for (std::size_t i = 0; i < joints.size(); ++i)
@@ -165,7 +165,8 @@ void add_active(Layout& layout, const ActiveRow& row) {
   if (row.spec->drive) layout.driven_rows.push_back(static_cast<int>(layout.active.size()) - 1);
 }
 
-// Sorts the bilateral constraints: one that prescribes a coordinate of a single body locks that coordinate; all others become wanted rows.
+// Sorts bilateral constraints. One that prescribes a coordinate of a single body locks that coordinate; those of all others are added to
+// `wanted`, the rows to be made.
 void want_bilateral(const System& system, const std::vector<char>& is_block_merged, const std::vector<char>& is_pin, Layout& layout,
                     std::vector<ActiveRow>& wanted) {
   for (int i = 0; i < static_cast<int>(system.row_blocks.size()); ++i) {
@@ -204,7 +205,7 @@ void want_frictions(const System& system, const State& state, const std::vector<
   }
 }
 
-// Adds the rows of absolute clusters, then those of each mechanism, otherwise in the given order.
+// Adds the active rows: those of absolute clusters, then those of each mechanism, otherwise in the order of `wanted`.
 void add_rows(const System& system, std::vector<ActiveRow> wanted, Layout& layout) {
   const auto place_of = [&layout](const ActiveRow& row) {
     const int cluster = std::max(layout.placements[row.spec->a].cluster, layout.placements[row.spec->b].cluster);
@@ -219,28 +220,28 @@ void add_rows(const System& system, std::vector<ActiveRow> wanted, Layout& layou
   }
   auto row = layout.active.begin();
   while (layout.has_mechanisms() && row != layout.active.end() && place_of(*row) < 0) ++row;
-  for (Mechanism& m : layout.mechanisms) { // mechanisms and rows have the same order
+  for (Mechanism& m : layout.mechanisms) { // mechanisms and their rows have the same order
     m.first_row = static_cast<int>(row - layout.active.begin());
     while (row != layout.active.end() && place_of(*row) == m.first_cluster) ++row;
     m.row_count = static_cast<int>(row - layout.active.begin()) - m.first_row;
   }
 }
 
-// Adds the further parts of rows over more than two bodies after all rows.
+// Adds the further parts of rows over more than two bodies, after all rows.
 void add_parts(Layout& layout) {
   for (std::size_t r = 0; r < layout.active.size(); ++r)
     for (const RowSpec* part = layout.active[r].spec->next; part; part = part->next) {
       SchurRow row;
       row.body[0] = layout.placements[part->a].cluster;
       row.body[1] = layout.placements[part->b].cluster;
-      if (row.body[0] == row.body[1]) row.body[0] = row.body[1] = -1; // both bodies in one cluster: no effect
+      if (row.body[0] == row.body[1]) row.body[0] = row.body[1] = -1; // both bodies in one cluster: the part has no effect
       layout.parts.push_back({static_cast<int>(layout.schur_rows.size()), static_cast<int>(r)});
       layout.part_specs.push_back(part);
       layout.schur_rows.push_back(row);
     }
 }
 
-// Renumbers clusters: those of mechanisms follow the others, each mechanism's consecutively.
+// Renumbers clusters such that those of mechanisms follow the others, with consecutive numbers in each mechanism.
 void take_joint_coordinates(JointCoordinates found, Layout& layout) {
   std::vector<int> order(layout.clusters.size()), place(layout.clusters.size());
   std::iota(order.begin(), order.end(), 0);
@@ -265,7 +266,7 @@ void take_joint_coordinates(JointCoordinates found, Layout& layout) {
   layout.mechanisms = std::move(found.mechanisms);
 }
 
-// Numbers the coordinates: absolute clusters first, then mechanisms.
+// Assigns coordinates: to absolute clusters first, then to mechanisms.
 void number_coordinates(const System& system, Layout& layout) {
   int next = 3 * layout.absolute_count;
   for (int i = 0; i < next; ++i) layout.scales.push_back({i % 3 < 2, 0.0});
@@ -280,7 +281,7 @@ void number_coordinates(const System& system, Layout& layout) {
   layout.inverse_mass.resize(next, 1.0);
 }
 
-// Selects the links needed: those of force elements always, those of rows while the rows are active.
+// Lists the links that an evaluation needs: those of force elements, and those of active rows.
 void find_links(const System& system, const State& state, Layout& layout) {
   std::vector<char> is_needed(system.links.slot_count(), 0);
   for (int i = 0; i < system.force_link_count; ++i) is_needed[system.links.slot(i)] = 1;
@@ -297,7 +298,7 @@ void find_links(const System& system, const State& state, Layout& layout) {
     if (is_needed[system.links.slot(i)]) layout.links.push_back({system.links.slot(i), system.links[i].a, system.links[i].b});
 }
 
-// Returns one row of each pin or rod by which a member of a mechanism is attached.
+// Returns one row of each pin or rod that attaches a member of a mechanism.
 std::vector<const RowSpec*> pin_rows(const System& system, const Layout& layout) {
   std::vector<const RowSpec*> rows;
   for (const Mechanism& mechanism : layout.mechanisms)
@@ -357,7 +358,7 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
 
 namespace {
 
-// Row blocks and friction elements inside clusters, which need no rows.
+// The row blocks and friction elements inside clusters, which need no rows.
 struct MergedRows {
   std::vector<char> is_block, is_friction;
 };
@@ -372,10 +373,10 @@ MergedRows merged_rows(const System& system, const std::vector<RigidJoint>& join
   return rows;
 }
 
-// Chooses joint coordinates for small mechanisms. Returns, per row block, whether it is a pin that needs no rows.
+// Selects joint coordinates for small mechanisms. Returns for each row block whether it is a pin of a mechanism, which needs no rows.
 std::vector<char> choose_coordinates(const System& system, const State& state, Coordinates coordinates, const MergedRows& merged,
                                      Layout& layout) {
-  // The blocks of inner states (Linearization::InnerBlock) require clusters in absolute coordinates.
+  // Inner states require absolute coordinates, because Linearization stores them in blocks of clusters (Linearization::InnerBlock).
   if (coordinates == Coordinates::absolute || system.inner_count() != 0) return std::vector<char>(system.row_blocks.size(), 0);
   JointCoordinates found = find_joint_coordinates(system, state, layout, coordinates, merged.is_block, merged.is_friction);
   std::vector<char> is_pin = found.is_pin;
@@ -413,13 +414,13 @@ void find_lock_terms(Layout& layout) {
   }
 }
 
-// Fills in the numbers of rows that are the same in every pose.
+// Sets the numbers of rows that are the same in every pose.
 void fill_rows(Layout& layout) {
-  // A row between two bodies of one cluster has no effect. Without inverse masses it drops out as dependent.
+  // A row between two bodies of one cluster has no effect. With zero inverse masses it is recognised as dependent.
   for (SchurRow& row : layout.schur_rows)
     for (int side = 0; side < 2; ++side)
       if (row.body[side] >= 0 && row.body[0] != row.body[1]) std::copy_n(layout.clusters[row.body[side]].w, 3, row.w[side]);
-  // The gradient of an angle is constant; evaluations do not write it again.
+  // The gradient of an angle is constant and is not computed again in evaluations.
   for (std::size_t r = 0; r < layout.active.size(); ++r) {
     if (layout.active[r].spec->kind != MeasureKind::angle) continue;
     SchurRow& row = layout.schur_rows[r];

@@ -8,14 +8,14 @@ namespace steplap {
 
 namespace {
 
-// Intended memory of the whole cache: less than the rest of a run of a large scene needs, and enough for all recurring modes of a scene
-// with some bodies.
+// Intended memory of the whole cache, bytes: less than the rest of a run of a large model needs, and enough for all recurring modes of a
+// model with some bodies.
 constexpr std::size_t k_store_bytes = 32U << 20U;
-// Estimated bytes of a layout for each body and each possible row. (Measured: 374 MB for 6300 sets of modes of 300 landing blocks, 0.2 kB
-// per body.)
+// Estimated bytes of a layout for each body and each possible row. Measured: 374 MB for 6300 sets of modes of 300 landing blocks, 0.2 kB
+// per body.
 constexpr std::size_t k_bytes_per_member = 512;
-// Lower limit: a run that alternates between few sets of modes never computes one again. Upper limit: a dozen contacts have some hundred
-// sets.
+// Limits on the number of layouts. With the lower limit, a run that alternates between few sets of modes never computes one again. The
+// upper limit suffices for a dozen contacts, which have some hundred sets.
 constexpr std::size_t k_fewest = 16, k_most = 1024;
 
 std::size_t usual_count(const System& system) {

@@ -10,21 +10,21 @@ namespace steplap {
 
 namespace {
 
-// Relative gap between upper and lower bound that counts as zero: rounding of sums of a few terms.
+// Relative difference of upper and lower bound that counts as zero, as the rounding error of sums of a few terms.
 constexpr double k_gap = 4e-15;
-// Limits of simplex iterations. For curved sets each cutting plane reduces the error by a constant factor; intervals need a few iterations
-// per unknown.
+// Limits on the number of simplex iterations. For curved sets each cutting plane reduces the error by a constant factor; for intervals a
+// few iterations per unknown suffice.
 constexpr int k_max_pivots_per_unknown = 60, k_max_pivots = 200;
-// Share of the largest capacity that replaces a capacity of zero.
+// Fraction of the largest capacity that replaces a capacity of zero.
 constexpr double k_least_capacity = 1e-13;
-// Elements without bound have a capacity above k_unlimited; it is replaced by k_most_capacity times the largest bounded one.
+// Capacities above k_unlimited are those of elements without bound. They are replaced by k_most_capacity times the largest bounded one.
 constexpr double k_unlimited = 1e20, k_most_capacity = 1e6;
 constexpr double k_tiny = 1e-30;
-// Weights of normals below this count as zero: the simplex basis is degenerate there.
+// Weights of normals below this count as zero. The simplex basis is then degenerate.
 constexpr double k_no_weight = 1e-12;
 
-// Returns the capacity of a row in the direction of `wrench`; a freewheel has one for one sign only. `capacity` consists of three blocks:
-// the larger capacity of each row, that of negative wrenches, that of positive ones.
+// Returns the capacity of a row in the direction of `wrench`; that of a freewheel depends on the sign. `capacity` has three blocks with one
+// number per row: the larger of both capacities, that for negative wrenches, that for positive ones.
 double capacity_towards(const VecX& capacity, Eigen::Index row, double wrench) {
   const Eigen::Index count = capacity.size() / 3;
   return capacity[(wrench < 0.0 ? 1 : 2) * count + row];
@@ -58,14 +58,14 @@ double LeastUsage::gauge(const Gauges& gauges, const VecX& wrench, Normal& norma
   return inverse * std::abs(wrench[row]);
 }
 
-// Returns the support function of a part at its present rates.
+// Returns the support function of an element at its present slip rates.
 double LeastUsage::support(const Gauges& gauges, std::size_t part) const {
   const int row = first_[part];
   if (dimension_[part] > 1) return gauges.support(static_cast<int>(part), rates_.data() + row);
   return capacity_towards(capacity_, row, -rates_[row]) / length_[row] * std::abs(rates_[row]);
 }
 
-// Returns the largest gauge of all parts, with its normal.
+// Returns the largest gauge of all elements at `wrench`, and its normal.
 double LeastUsage::largest(const Gauges& gauges, const VecX& wrench, Normal& normal) const {
   double worst = -1.0;
   for (std::size_t p = 0; p < dimension_.size(); ++p) {
@@ -79,8 +79,8 @@ double LeastUsage::largest(const Gauges& gauges, const VecX& wrench, Normal& nor
   return worst;
 }
 
-// Distributes the load by min Σ λ_r²/(c_r l_r) over z, with capacities c_r and lengths l_r. The gradient by λ is a mechanism; if all parts
-// move as one rigid body, it is the one that limits the load.
+// Distributes the load such that Σ λ_r²/(c_r l_r) is least over z, with capacities c_r and lengths l_r. The gradient by λ is a slip
+// mechanism. If all elements move as one rigid body, it is the mechanism that limits the load.
 void LeastUsage::share_by_capacity(const Gauges& gauges, const VecX& wrench) {
   for (std::size_t p = 0; p < dimension_.size(); ++p)
     for (int r = 0; r < dimension_[p]; ++r) {
@@ -106,7 +106,7 @@ void LeastUsage::share_by_capacity(const Gauges& gauges, const VecX& wrench) {
   trial_ = wrench + basis_ * settled_;
 }
 
-// Returns the kinematic lower bound of u: power of the load in the mechanism over the largest power of friction.
+// Returns the kinematic lower bound of u for this mechanism: power of the load over the largest power that friction can dissipate.
 double LeastUsage::bound_of_mechanism(const Gauges& gauges, const VecX& wrench) {
   rates_ = trial_.cwiseQuotient(capacity_.head(trial_.size()));
   VecX taken(static_cast<Eigen::Index>(dimension_.size()));
@@ -126,8 +126,8 @@ void LeastUsage::put_column(const Normal& normal, double* column) const {
   column[k] = 1.0;
 }
 
-// Start of the simplex: two opposite normals of the first pivot row and one normal of each other pivot row. This basis is feasible with all
-// weight on the first pair.
+// Starts the simplex method: two opposite normals of the first pivot row and one normal of each other pivot row. This basis is feasible,
+// with all weight on the first two.
 void LeastUsage::start_basis(const VecX& wrench) {
   const auto k = static_cast<std::size_t>(basis_.cols());
   for (std::size_t i = 0; i <= k; ++i) {
@@ -214,7 +214,7 @@ void LeastUsage::solve(const Gauges& gauges, const VecX& wrench) {
   start_basis(trial_);
   improve(gauges, wrench);
   if (shared <= 1.0) return;
-  // Gauges are convex, so at this fraction of the way the largest gauge is at most 1.
+  // Gauges are convex, so the largest gauge is at most 1 at this fraction of the way towards the optimum.
   const double excess = shared - usage_, wanted = shared - 1.0;
   const double part = excess > wanted ? wanted / excess : 1.0;
   settled_ += part * (z_ - settled_);

@@ -11,9 +11,9 @@
 //
 // with slip rates Σ y_i n_i, on which the self-stresses N do no work.
 //
-// Solved by the revised simplex method on the dual, with a basis of k + 1 normals; the entering normal is that of the largest gauge at the
-// present z. For intervals this terminates with the exact solution; for curved sets it is Kelley's cutting-plane method with certified
-// bounds from both sides.
+// The dual is solved by the revised simplex method with a basis of k + 1 normals, k the number of columns of N; the entering normal is that
+// of the largest gauge at the present z. For intervals this terminates with the exact solution; for curved sets it is Kelley's
+// cutting-plane method with certified bounds from both sides.
 #pragma once
 
 #include "mbd/base/types.h"
@@ -22,39 +22,40 @@
 
 namespace steplap {
 
-/// Admissible sets of the elements.
+/// Interface to the admissible sets of the elements of a group; `part` is the index of the element in the group.
 class Gauges {
 public:
   virtual ~Gauges() = default;
-  /// Returns the support function, max over admissible w of −w·rate.
+  /// Returns the support function of element `part`: max over admissible w of −w·rate.
   [[nodiscard]] virtual double support(int part, const double* rate) const = 0;
-  /// Returns the gauge of `wrench` (1 on the boundary of the admissible set), and `normal` n with n·w ≤ gauge(w) for all w, equal for
-  /// `wrench`. Called only for elements of dimension > 1.
+  /// Returns the gauge of `wrench` (1 on the boundary of the admissible set). Writes to `normal` a vector n with n·w ≤ gauge(w) for all w,
+  /// with equality for `wrench`. Called only for elements of dimension > 1.
   virtual double gauge(int part, const double* wrench, double* normal) const = 0;
 };
 
-/// Least utilisation u of one group of elements, with the distribution of wrenches that attains it.
+/// Least utilisation u of one group of elements, and the distribution of wrenches that attains it.
 class LeastUsage {
 public:
-  /// `dimension`: 1 or 3 for each element, whose rows are consecutive. `basis`: N, rows × k, of full column rank; row pivots[j] is zero
-  /// except in column j. `length`: one per row, m; 1 for a force row, the lever that converts a moment to a force for an angle row.
+  /// `dimension`: 1 or 3 for each element; the rows of an element are consecutive. `basis`: N, rows × k, of full column rank; row pivots[j]
+  /// of N is zero except in column j. `length`, m, for each row: 1 for a force; for the moment of an angle row the lever that converts it
+  /// to a force.
   LeastUsage(std::vector<int> dimension, MatX basis, std::vector<int> pivots, std::vector<double> length);
 
-  /// Solves for the wrenches λ = `wrench`, one value per row.
+  /// Computes u for the wrenches λ = `wrench`, one number for each row.
   void solve(const Gauges& gauges, const VecX& wrench);
 
-  /// Returns u; below k_surely_holds only an upper bound of it.
+  /// Returns u; if the result is below k_surely_holds, it is only an upper bound of u.
   [[nodiscard]] double usage() const { return usage_; }
   /// Returns a certified lower bound of u.
   [[nodiscard]] double lower() const { return lower_; }
   /// Returns the optimal wrenches λ + N z, per row.
   [[nodiscard]] const VecX& wrench() const { return best_; }
-  /// Returns z of wrench(). Any other admissible z is physically possible, too.
+  /// Returns z of wrench(). Other admissible z are physically possible, too.
   [[nodiscard]] const VecX& coefficients() const { return z_; }
-  /// Returns the slip rates of the limiting mechanism, per row, scaled to dissipate 1 W; zero for elements that do not move.
+  /// Returns the slip rates of the limiting mechanism for each row, scaled to dissipate 1 W; zero for elements that do not slip in it.
   [[nodiscard]] const VecX& rates() const { return rates_; }
-  /// Returns z of a distribution that depends smoothly on λ and is admissible if one exists: the one with least Σ wrench²/capacity, moved
-  /// towards wrench() as far as needed if it overloads an element.
+  /// Returns z of a distribution that depends smoothly on λ, and is admissible if any is. It is the distribution with least Σ
+  /// wrench²/capacity, moved towards wrench() as far as necessary if it overloads an element.
   [[nodiscard]] const VecX& settled() const { return settled_; }
 
   static constexpr double k_surely_holds = 0.5;

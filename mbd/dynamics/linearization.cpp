@@ -15,12 +15,12 @@ namespace {
 
 using D12 = Dual<12>;
 
-// Steps of the central differences of slip laws: the cube root of the rounding error, relative to the quantity changed.
+// Step of the central differences of slip laws, relative to the quantity that is changed: the cube root of the rounding error.
 constexpr double k_relative_step = 6e-6;
-constexpr double k_pose_step = 1e-7;  // step for m and for rad; suits bodies of about one metre
+constexpr double k_pose_step = 1e-7;  // step for positions, m, and angles, rad; suits bodies of about one metre
 constexpr double k_least_rate = 1e-9; // smallest magnitude assumed for rates, m/s or rad/s
 
-// Returns the motion of a body on a cluster with motion k.
+// Returns the motion of a body in a cluster with motion k.
 Motion<D12> placed(const Motion<D12>& k, const Placement& place) {
   if (place.is_trivial) return k;
   Motion<D12> m;
@@ -28,7 +28,7 @@ Motion<D12> placed(const Motion<D12>& k, const Placement& place) {
   return m;
 }
 
-// A row as a function of the poses (derivative indices 0–5) and velocities (6–11) of the clusters on either side.
+// A row as a function of the poses (derivative indices 0–5) and velocities (6–11) of the clusters on its two sides.
 struct DualRow {
   int cluster[2];
   D12 rate, bias;
@@ -89,7 +89,7 @@ void Linearization::evaluate(Dynamics& dynamics, double t, const double* y) {
   if (layout_->has_mechanisms()) reduce();
 }
 
-// Adds ∂(force on a body)/∂(motion of a body), converted to the coordinates of their clusters.
+// Adds the derivatives of the force on one body by the motion of another one, converted to the coordinates of their clusters.
 void Linearization::add_body_block(int row_body, int column_body, const Mat3& by_pose, const Mat3& by_velocity) {
   const Placement& row = layout_->placements[row_body];
   const Placement& column = layout_->placements[column_body];
@@ -185,20 +185,21 @@ void Linearization::add_states() {
   }
 }
 
-// Adds the term by which the moment of a force on a body off its cluster's centre changes with θ: ∂(l × F)/∂θ = −l·F.
+// Adds the derivative of a moment: the force F on a body at distance l from its cluster's centre has the moment l × F, and ∂(l × F)/∂θ =
+// −l·F.
 void Linearization::add_transport() {
   const std::vector<Motion<double>>& motion = dynamics_->motion();
   for (const int i : layout_->riding) {
     const Placement& place = layout_->placements[i];
     const Motion<double>& centre = motion[layout_->clusters[place.cluster].motion];
     const BodyForce& f = dynamics_->evaluation().force[i];
-    // `force` also contains sliding wrenches; take_out_transport() removes their part.
+    // `force` contains sliding wrenches, too; take_out_transport() removes their part.
     const int k = 3 * place.cluster + 2;
     put(stiffness_, k, k, -((motion[i].x - centre.x) * f.fx + (motion[i].y - centre.y) * f.fy));
   }
 }
 
-// Adds a row part by part; all terms are linear in the row.
+// Adds the terms of a row, part by part; all terms are linear in the row.
 void Linearization::add_row(std::size_t r) {
   for (const RowSpec* part = layout_->active[r].spec; part; part = part->next) add_part(r, *part);
 }
@@ -207,7 +208,7 @@ void Linearization::add_part(std::size_t r, const RowSpec& spec) {
   const DualRow row = differentiate<true>(spec, *layout_, dynamics_->motion());
   const double lambda = dynamics_->multipliers()[r];
   const int i = static_cast<int>(r);
-  D12 slack = -row.bias; // γ − J a without the prescribed acceleration, which does not depend on the state
+  D12 slack = -row.bias; // γ − J a, without the prescribed acceleration, which does not depend on the state
   for (int k = 0; k < 6; ++k)
     if (const int c = row.cluster[k / 3]; c >= 0) slack -= row.j[k] * D12(acceleration_[3 * c + k % 3]);
   for (int k = 0; k < 6; ++k) {
@@ -244,13 +245,13 @@ void Linearization::acceleration_by_state(MatX& by_pose, MatX& by_velocity) cons
     wj.setZero();
     for (const Triplet& e : response_) wj(e.row(), e.col()) += e.value();
   }
-  const RankLu schur(j * wj); // rank-revealing, because rows may be redundant
+  const RankLu schur(j * wj); // rank-revealing, since rows may depend on each other
   by_pose += wj * schur.solve(dense(bias_q_, m_) - j * by_pose);
   by_velocity += wj * schur.solve(dense(bias_v_, m_) - j * by_velocity);
 }
 
-// One sliding friction element: forces w_r J_rᵀ with w = w(relative velocity, relative pose, normal forces), differentiated by central
-// differences.
+// One sliding friction element. Its forces w_r J_rᵀ, with w = w(relative velocity, relative pose, normal forces), are differentiated by
+// central differences.
 struct Linearization::Sliding {
   const FrictionElement& friction;
   const FrictionState& state;
@@ -259,7 +260,7 @@ struct Linearization::Sliding {
   Evaluation moved; ///< input of the slip law, changed one number at a time
   DualRow rows[3] = {};
   double rate[3] = {0, 0, 0}, wrench[3] = {0, 0, 0};
-  double by_state[3][12] = {}; ///< derivatives of the wrench by the coordinates of the clusters; 12 columns as in DualRow
+  double by_state[3][12] = {}; ///< derivatives of the wrench by the clusters' coordinates; columns as derivative indices of DualRow
 
   void difference(double& x, double step, double* slope) {
     const double before = x;
@@ -307,8 +308,8 @@ void Linearization::differentiate_by_rate(Sliding& sliding) const {
   }
 }
 
-// For three rows: their values are the relative pose, with exact gradients. The values (x, y along b's axes, angle) are changed one at a
-// time by moving a.
+// Differentiates the wrench of an element with three rows by their values (x, y along b's axes, angle), which are the relative pose and
+// have exact gradients. They are changed one at a time, by moving a.
 void Linearization::differentiate_by_pose(Sliding& sliding) {
   const RowSpec* const specs = sliding.specs;
   sliding.moved.motion = motion_.data();
@@ -339,7 +340,8 @@ void Linearization::differentiate_by_pose(Sliding& sliding) {
   sliding.moved.motion = dynamics_->evaluation().motion;
 }
 
-// For one row: the wrench may depend on the row's value, as that of a buffer on its depth. a is moved along the gradient.
+// Differentiates the wrench of an element with one row by the row's value, on which it may depend, as that of a buffer on its compression.
+// The value is changed by moving a along the gradient.
 void Linearization::differentiate_by_value(Sliding& sliding) {
   const RowSpec& spec = *sliding.specs;
   sliding.moved.motion = motion_.data();
@@ -362,7 +364,7 @@ void Linearization::differentiate_by_value(Sliding& sliding) {
   sliding.moved.motion = dynamics_->evaluation().motion;
 }
 
-// Adds, to the equation of coordinate k of the rows, the derivatives by a coordinate of a cluster and by its rate.
+// Adds the derivatives by a coordinate of a cluster, and by its rate, to the equation of coordinate k of the rows.
 void Linearization::put_along(const Sliding& sliding, int k, int cluster, int coordinate, double by_pose, double by_velocity) {
   const int own = sliding.rows[0].cluster[k / 3];
   if (own < 0 || cluster < 0) return;
@@ -371,7 +373,7 @@ void Linearization::put_along(const Sliding& sliding, int k, int cluster, int co
   put(damping_, row, column, by_velocity);
 }
 
-// Adds the terms due to the rotation of the rows, and those due to the change of the wrench along them.
+// Adds the derivatives due to the rotation of the rows, and those due to the change of the wrench.
 void Linearization::add_sliding_rows(const Sliding& sliding) {
   const DualRow* const rows = sliding.rows;
   for (int k = 0; k < 6; ++k)
@@ -385,8 +387,8 @@ void Linearization::add_sliding_rows(const Sliding& sliding) {
     }
 }
 
-// add_transport() has included this wrench for bodies off their clusters' centres. The gradients of the rows contain the whole term, so
-// that part is subtracted.
+// Subtracts the part that add_transport() has added for this wrench on bodies off their clusters' centres, because the gradients of the
+// rows contain the whole term.
 void Linearization::take_out_transport(const Sliding& sliding) {
   for (int side = 0; side < 2; ++side) {
     const int body = side == 0 ? sliding.specs[0].a : sliding.specs[0].b;
@@ -402,7 +404,7 @@ void Linearization::take_out_transport(const Sliding& sliding) {
   }
 }
 
-// Adds the derivatives by normal forces, through the contacts that depend on the motion.
+// Adds the derivatives by normal forces, for all contacts on which the wrench depends.
 void Linearization::add_normal_forces(Sliding& sliding) {
   normal_.assign(sliding.moved.contact_force, sliding.moved.contact_force + dynamics_->system().contact_count);
   sliding.moved.contact_force = normal_.data();
@@ -415,7 +417,8 @@ void Linearization::add_normal_forces(Sliding& sliding) {
   }
 }
 
-// Adds the derivatives of one contact force: by the coordinates of its bodies, converted to those of their clusters.
+// Adds the derivatives by one normal force: `along` times its derivatives by the coordinates of its bodies, converted to those of their
+// clusters.
 void Linearization::add_normal_force(const Sliding& sliding, const PairJacobian& contact, int k, double along) {
   for (int side = 0; side < 2; ++side) {
     const int body = side == 0 ? contact.a : contact.b;

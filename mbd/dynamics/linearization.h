@@ -41,26 +41,26 @@ class Linearization {
 public:
   using Triplet = Eigen::Triplet<double, int>;
 
-  /// Computes all matrices at time t and packed state y, for the modes last set in `dynamics`. For one layout the entries always have the
-  /// same order, so that a sparsity pattern can be reused.
+  /// Computes all matrices at time t and packed state y, for the modes set in `dynamics`. The entries always have the same order for one
+  /// layout, so that a sparsity pattern can be used again.
   void evaluate(Dynamics& dynamics, double t, const double* y);
 
   [[nodiscard]] int coordinates() const { return n_; } ///< number of coordinates n of the layout
   [[nodiscard]] int rows() const { return m_; }        ///< number of active constraint rows m
-  /// Returns n inverse masses and inertias, 1/kg and 1/(kg m²); zero for locked coordinates, 1 in mechanisms.
+  /// Returns the n inverse masses and inertias, 1/kg and 1/(kg m²); zero for locked coordinates, 1 for coordinates of mechanisms.
   [[nodiscard]] const std::vector<double>& inverse_mass() const { return *inverse_mass_; }
 
-  // Sparse matrices in SI units and rad; entries at the same place are to be added.
+  // Sparse matrices in SI units and rad, as triplets; entries at the same place add up.
   [[nodiscard]] const std::vector<Triplet>& stiffness() const { return stiffness_; } ///< K, n × n
   [[nodiscard]] const std::vector<Triplet>& damping() const { return damping_; }     ///< D, n × n
   [[nodiscard]] const std::vector<Triplet>& gradient() const { return gradient_; }   ///< J, m × n
-  /// M⁻¹ Jᵀ, n × m; empty if there are no mechanisms.
+  /// Returns M⁻¹ Jᵀ, n × m; empty if there are no mechanisms.
   [[nodiscard]] const std::vector<Triplet>& response() const { return response_; }
   [[nodiscard]] const std::vector<Triplet>& bias_by_pose() const { return bias_q_; }     ///< G_q, m × n
   [[nodiscard]] const std::vector<Triplet>& bias_by_velocity() const { return bias_v_; } ///< G_v, m × n
 
-  /// Inner states of one element between two clusters. Columns and rows refer to the coordinates of either cluster in turn; those of the
-  /// ground and locked ones are zero.
+  /// Derivatives for the inner states of one element between two clusters. Rows and columns for coordinates refer to those of the first
+  /// cluster, then of the second; entries for the ground and for locked coordinates are zero.
   struct InnerBlock {
     int cluster[2] = {-1, -1};
     int first = 0, count = 0;
@@ -69,17 +69,18 @@ public:
     Mat3 by_inner;
   };
   [[nodiscard]] const std::vector<InnerBlock>& inner() const { return inner_; }
-  /// Own states (own_states.h). Rows are inner states, columns coordinates (by_pose, by_velocity) or inner states (by_state); for `forces`
-  /// rows are coordinates and columns inner states. Locked columns are omitted.
+  /// Derivatives for [[state]] variables (own_states.h). In by_pose, by_velocity and by_state rows are inner states; columns are
+  /// coordinates, or inner states in by_state. In `forces` rows are coordinates and columns inner states. Columns of locked coordinates are
+  /// omitted.
   struct StateParts {
     std::vector<Triplet> by_pose, by_velocity, by_state, forces;
   };
   [[nodiscard]] const StateParts& states() const { return states_; }
   [[nodiscard]] int inner_count() const { return dynamics_->inner_count(); }
 
-  /// Returns one of these lists as a dense matrix with the given number of rows.
+  /// Returns a list of triplets as a dense matrix with n columns and the given number of rows.
   [[nodiscard]] MatX dense(const std::vector<Triplet>& entries, int rows) const;
-  /// Computes ∂a/∂q and ∂a/∂v (n × n each) of free coordinates with constraints eliminated, by dense algebra.
+  /// Computes ∂a/∂q and ∂a/∂v (n × n each) for the free coordinates, with the constraints eliminated, by dense algebra.
   void acceleration_by_state(MatX& by_pose, MatX& by_velocity) const;
 
 private:
@@ -120,15 +121,16 @@ private:
   StateJacobian state_jacobian_;
   StateParts states_;
   std::vector<Triplet> stiffness_, damping_, gradient_, bias_q_, bias_v_, response_;
-  /// Describes how a coordinate of a mechanism moves a cluster.
+  /// Motion of a cluster by one coordinate of its mechanism.
   struct Lever {
     int coordinate = 0;
-    int axis = -1;       ///< for a translation: 0 x, 1 y; −1: rotation
+    int axis = -1;       ///< direction of a translation: 0 x, 1 y; −1: rotation
     bool is_own = false; ///< the coordinate is the angle of the cluster itself
     double omega = 0.0, alpha = 0.0;
     Pair<double> arm; ///< vector that it rotates: from its pin to the cluster's centre
   };
-  /// Derivatives of a cluster coordinate c: of ċ by the rate of the lever's coordinate, of ċ and c̈ by the coordinate, of c̈ by its rate.
+  /// Derivatives of the velocity ċ and acceleration c̈ of a cluster coordinate c by a coordinate s of the mechanism: ∂ċ/∂ṡ, ∂ċ/∂s, ∂c̈/∂s,
+  /// ∂c̈/∂ṡ.
   struct LeverRates {
     double rate, rate_by_pose, acceleration_by_pose, acceleration_by_rate;
   };
@@ -137,8 +139,8 @@ private:
   template <class F> void for_levers(int at, const F& f) const;
   std::vector<std::vector<Lever>> levers_;                     ///< per cluster; empty if in absolute coordinates
   std::vector<Triplet> kept_gradient_, kept_pose_, kept_rate_; ///< scratch of reduce()
-  MatX by_pose_, by_rate_;                                     ///< of one mechanism
-  std::vector<char> is_touched_;                               ///< per coordinate: these matrices have entries there
+  MatX by_pose_, by_rate_;                                     ///< matrices of one mechanism
+  std::vector<char> is_touched_;                               ///< for each coordinate: by_pose_ and by_rate_ have entries there
   std::vector<Motion<double>> motion_;                         ///< scratch for the differences of slip laws
   std::vector<double> normal_;
 };

@@ -37,7 +37,7 @@ void Linearization::find_levers() {
     }
 }
 
-// Calls f(coordinate, rates) for each coordinate that moves the cluster coordinate `at`; an absolute one moves only itself.
+// Calls f(coordinate, rates) for each coordinate that moves the cluster coordinate `at`. An absolute coordinate is moved by itself only.
 template <class F> void Linearization::for_levers(int at, const F& f) const {
   if (at < 3 * layout_->absolute_count) return f(at, LeverRates{1.0, 0.0, 0.0, 0.0});
   for (const Lever& lever : levers_[at / 3]) f(lever.coordinate, rates_of(lever, at % 3));
@@ -60,14 +60,15 @@ void Linearization::reduce() {
   for (const Mechanism& m : layout_->mechanisms) reduce_forces(m);
   stiffness_.swap(kept_pose_);
   damping_.swap(kept_rate_);
-  // The buffers are swapped next time. All get the same capacity, so that no step allocates.
+  // Gives all buffers the same capacity. They are swapped in the next call, and no step must allocate.
   std::size_t room = 0;
   const auto all = {&stiffness_, &damping_, &gradient_, &bias_q_, &bias_v_, &response_, &kept_gradient_, &kept_pose_, &kept_rate_};
   for (const auto* entries : all) room = std::max(room, entries->capacity());
   for (auto* entries : all) entries->reserve(room);
 }
 
-// Converts gradients and bias derivatives. The accelerations of clusters at constant s̈ depend on the state, which adds terms.
+// Converts gradients and bias derivatives to joint coordinates. The accelerations of clusters at constant s̈ depend on the state, which
+// adds terms.
 void Linearization::reduce_rows() {
   const int absolute = 3 * layout_->absolute_count;
   for (auto* entries : {&kept_gradient_, &kept_pose_, &kept_rate_}) entries->clear();
@@ -141,7 +142,7 @@ void Linearization::reduce_forces(const Mechanism& m) {
   }
 }
 
-// Adds −Tᵀ m ∂a/∂s and (∂Tᵀ/∂s)(Q + Jᵀλ − m a) of one cluster. An angle changes only the direction of the vectors that it rotates.
+// Adds −Tᵀ m ∂a/∂s and (∂Tᵀ/∂s)(Q + Jᵀλ − m a) for one cluster. An angle changes only the directions of the vectors that it rotates.
 void Linearization::add_inertia(const Mechanism& m, const Member& member) {
   const BodyForce& f = dynamics_->evaluation().force[member.slot];
   const double* const a = acceleration_ + 3 * member.cluster;

@@ -14,24 +14,24 @@ namespace steplap {
 
 namespace {
 
-// Least independent part of a row, relative to its length, with which it counts as independent. k_dependent is for joints. Dependent
-// friction rows are determined by the equations (SchurSolver::k_dependent): a friction row that these keep depends on others only if it is
-// exactly parallel to bilateral rows of a rigid joint.
+// Rows whose independent part, relative to their length, is below these count as dependent: k_dependent for joints. Dependent friction rows
+// are determined by the equations (SchurSolver::k_dependent); a friction row that is kept there depends on others only if it is exactly
+// parallel to bilateral rows of a rigid joint (k_exactly_dependent).
 constexpr double k_dependent = 1e-6, k_exactly_dependent = 1e-9;
 constexpr double k_out_of_balance = 1e-6; // largest residual of Jᵀ n relative to its terms, for a null vector n
-// Rounding errors of the relative motion of a group's rows: absolute, m/s and m/s², and relative to its terms (k_discord). k_least_gap, m:
-// error of positions that projection accepts (IntegratorSettings).
+// Rounding errors of the relative motion along a group's rows: absolute, in m/s and m/s², and relative to its terms (k_discord).
+// k_least_gap is the error of positions that projection accepts, m (IntegratorSettings).
 constexpr double k_least_rate = 1e-12, k_least_acceleration = 1e-10, k_least_gap = 3e-13;
 constexpr double k_place_rounding = 8.0 * std::numeric_limits<double>::epsilon(); // rounding of positions, relative to coordinates
 constexpr double k_discord = 1e-9;
-constexpr double k_open = 1e-6; // relative to the capacity: bounds of u that differ by more have not converged
+constexpr double k_open = 1e-6; // relative to the capacity: if the bounds of u differ by more, the iteration has not converged
 // Components of a null vector below this are rounding.
 constexpr double k_no_part = 1e-11;
-// Largest number of connected bodies without friction that is analysed, because the algebra is dense. Larger ones keep the multipliers of
-// the solver.
+// Largest number of connected bodies without friction that is analysed, because the algebra is dense. With more bodies the multipliers of
+// the solver are reported.
 constexpr int k_most_bodies = 200;
 
-// Calls f(body, 3 gradient components) for both sides of every part of a row, except for the ground.
+// Calls f(body, j) for both sides of every part of a row, except for the ground; j are the 3 components of the gradient.
 template <class F> void for_sides(const RowSpec& row, const std::vector<Motion<double>>& motion, const F& f) {
   for (const RowSpec* part = &row; part; part = part->next) {
     const RowGradient<double> g = row_gradient(*part, motion[part->a], motion[part->b]);
@@ -50,8 +50,8 @@ int first_body(const RowSpec& row) { return row.a != k_ground ? row.a : row.b; }
 
 using NullSpace = PivotedQr::NullSpace;
 
-// Returns the null vectors of `matrix`: exact ones of the kept columns, and one for each column in `left_out`, which depends on the kept
-// ones exactly or nearly.
+// Returns the null vectors of `matrix`: those of the kept columns, and one for each column in `left_out`, which depends exactly or nearly
+// on the kept ones.
 NullSpace null_space_of(const MatX& matrix, const std::vector<char>& left_out) {
   std::vector<Eigen::Index> kept, out;
   for (Eigen::Index c = 0; c < matrix.cols(); ++c) (left_out[c] != 0 ? out : kept).push_back(c);
@@ -98,7 +98,7 @@ std::vector<LoadSharing::HeldRow> LoadSharing::held_rows(const State& state) con
 
 LoadSharing::LoadSharing(const System& system, const State& state, const std::vector<Motion<double>>& motion, std::vector<char> left_out)
     : system_(system), group_of_(system.frictions.size(), -1), left_out_(std::move(left_out)) {
-  // A part consists of bodies connected by rows; the ground does not connect.
+  // Divide the bodies into sets connected by rows. The ground does not connect.
   const std::vector<HeldRow> rows = held_rows(state);
   std::vector<int> parent(system.bodies.size());
   std::iota(parent.begin(), parent.end(), 0);
@@ -147,7 +147,7 @@ void LoadSharing::analyze(ConnectedRows& part, const std::vector<Motion<double>>
     for_sides(*part.rows[r].spec, motion, [&](int body, const double* side) {
       const BodyData& data = system_.bodies[body];
       for (int c = 0; c < 3; ++c) {
-        // Several parts of the row may act on the same body; mobility needs the square of their sum.
+        // Several parts of a row may act on the same body. The square of their sum is needed for `mobility`.
         double& sum = gradient(3 * body_index[body] + c, r);
         const double before = sum;
         sum += side[c];
@@ -161,7 +161,8 @@ void LoadSharing::analyze(ConnectedRows& part, const std::vector<Motion<double>>
   gradient = gradient * inverse_norm.asDiagonal();
   const Eigen::Index free = part.free_count, bounded = count - free;
 
-  // First the joints alone; then the sticking wrenches that do no work on the motions which the joints leave free.
+  // Find the null vectors of the joints alone, then those combinations of sticking wrenches that do no work on the motions which the joints
+  // leave free.
   const PivotedQr joints(gradient.leftCols(free), k_dependent);
   const NullSpace idle = joints.null_space(k_no_part);
   NullSpace shared;
@@ -187,7 +188,7 @@ void LoadSharing::analyze(ConnectedRows& part, const std::vector<Motion<double>>
   if (k > 0) make_groups(part, shared.pivots, shared.vectors);
 }
 
-// Elements with components in the same null vector belong to one group.
+// Makes the groups: elements with components in the same null vector belong to one group.
 void LoadSharing::make_groups(ConnectedRows& part, const std::vector<int>& pivots, const MatX& basis) {
   const auto element_of = [&](Eigen::Index row) { return part.rows[part.free_count + row].friction; };
   std::vector<int> parent(system_.frictions.size());
@@ -235,7 +236,7 @@ void LoadSharing::make_groups(ConnectedRows& part, const std::vector<int>& pivot
   }
 }
 
-// Returns for each null vector n the residual of Jᵀ n, relative to its terms.
+// Returns for each null vector n the residual of Jᵀ n at the poses `motion`, relative to its terms.
 VecX LoadSharing::off_balance(const ConnectedRows& part, const std::vector<Motion<double>>& motion) const {
   const Eigen::Index vectors = part.null.cols();
   MatX sum = MatX::Zero(3 * static_cast<Eigen::Index>(system_.bodies.size()), vectors);
@@ -253,7 +254,7 @@ VecX LoadSharing::off_balance(const ConnectedRows& part, const std::vector<Motio
   return size;
 }
 
-// Null vectors of nearly dependent rows had a residual from the start (`off`), so only its change counts.
+// Null vectors of nearly dependent rows have a residual from the start (`off`), so only its change counts.
 bool LoadSharing::holds_at(const std::vector<Motion<double>>& motion, const std::vector<char>& left_out) const {
   if (left_out != left_out_) return false;
   return std::all_of(parts_.begin(), parts_.end(),
@@ -285,13 +286,13 @@ private:
 
 namespace {
 
-// Returns an upper bound of the motion c along a row with gradient j if the row had any direction. The direction of a row is known to
-// k_discord rad only, so k_discord times this motion is rounding.
+// Returns an upper bound of the motion c along a row with gradient j for any direction of the row. The direction of a row is known to
+// k_discord rad only, so k_discord times this bound is rounding.
 double across(const double* j, const double* c) {
   return (std::abs(j[0]) + std::abs(j[1])) * (std::abs(c[0]) + std::abs(c[1])) + std::abs(j[2] * c[2]);
 }
 
-// Sums over the rows of a null vector, with the sums of their terms for rounding.
+// Sums over the rows of a null vector, and sums of the absolute terms, which give the rounding errors.
 struct Discord {
   double gap = 0.0, rate = 0.0, second = 0.0; ///< incompatibility of position, m, velocity, m/s, and acceleration, m/s²
   double moved = 0.0, rate_terms = 0.0, second_terms = 0.0;
@@ -304,8 +305,8 @@ struct Discord {
   }
 };
 
-// Adds a row, which the null vector contains with factor n. `is_led`: the null vector contains joints or drives, whose rows are also
-// affected by rounding of the displacement since the start.
+// Adds a row, whose factor in the null vector is n, to `sum`. `is_led`: the null vector contains joints or drives, so that rounding of the
+// displacement since the start counts, too.
 void add_row(const System& system, const RowSpec& spec, double n, bool is_led, const Evaluation& e, const double* acceleration,
              Discord& sum) {
   const auto m = evaluate_row<true>(spec, e.motion);
@@ -363,7 +364,8 @@ void LoadSharing::solve(const Evaluation& evaluation, const double* friction_for
     VecX wrench(group.slot.size());
     for (std::size_t r = 0; r < group.slot.size(); ++r) wrench[static_cast<Eigen::Index>(r)] = friction_force[group.slot[r]];
     group.least.solve(FrictionGauges(system_, evaluation, group.frictions), wrench);
-    // If the iterations were exhausted, it is unknown between the two bounds whether the group sticks.
+    // If the iteration limit was reached, u is known only between two bounds; if 1 lies between them, it is unknown whether the group
+    // sticks.
     if (group.least.usage() > 1.0 && group.least.lower() < 1.0 - k_open)
       throw ElementFailure("whether '" + system_.element_names[system_.frictions[group.frictions.front()].element] +
                                "' and what shares its load hold cannot be told at t = " + rounded_text(evaluation.t, 12) + " s: between " +

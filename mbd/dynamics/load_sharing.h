@@ -1,6 +1,6 @@
 // Linearly dependent constraints, whose loads are statically indeterminate.
 //
-// If Jᵀ of all active rows (joints, drives, sticking friction) has null vectors n, then λ + n gives the same motion: accelerations are
+// If Jᵀ of all active rows (joints, drives, sticking friction) has null vectors n, then λ + n gives the same motion as λ: accelerations are
 // unique, single multipliers are not. This class finds the null vectors in the coordinates of the bodies, independently of merging and
 // locking, and provides
 //
@@ -9,9 +9,9 @@
 //   reports  one distribution of many: friction carries what joints cannot, in proportion to its capacities (LeastUsage::settled); joints
 //            have the least Σ A_rr λ_r², where A_rr = J_r M⁻¹ J_rᵀ is the acceleration by a unit multiplier.
 //
-// Null vectors depend on the pose, but remain valid while the bodies do not move relative to each other; callers check this by holds_at().
-// Which friction rows count as dependent is decided by SchurSolver, which leaves them out of the equations. Each row left out there has one
-// null vector. Other friction rows have none, except those of merged joints parallel to bilateral rows, which are exactly dependent.
+// Null vectors depend on the pose, but remain valid while the bodies do not move relative to each other, which callers check by holds_at().
+// SchurSolver decides which friction rows count as dependent, and leaves these out of the equations. Each row left out has one null vector.
+// Other friction rows have none, except those of merged joints parallel to bilateral rows, which are exactly dependent.
 #pragma once
 
 #include "mbd/dynamics/least_usage.h"
@@ -22,10 +22,10 @@
 
 namespace steplap {
 
-/// Sticking elements that share a load.
+/// Sticking elements that share a load, so that their wrenches are not unique.
 struct SharingGroup {
   std::vector<int> frictions;
-  std::vector<int> slot; ///< per row: index in Snapshot::friction_force
+  std::vector<int> slot; ///< index in Snapshot::friction_force of each row
   LeastUsage least;
 };
 
@@ -35,50 +35,51 @@ struct Release {
   double wrench[3] = {0, 0, 0}; ///< on the boundary of the admissible set
 };
 
-/// Groups of sticking elements that share a load in a statically indeterminate way, for one set of modes.
+/// Groups of sticking elements that share a load, for one set of modes.
 class LoadSharing {
 public:
-  /// Finds the null vectors for the poses `motion` of all bodies and the phases of `state`. `left_out`: per index of
-  /// Snapshot::friction_force, the row is left out of the equations.
+  /// Finds the null vectors at the poses `motion` of all bodies, with the phases of `state`. `left_out`: for each index of
+  /// Snapshot::friction_force, whether the row is left out of the equations.
   LoadSharing(const System& system, const State& state, const std::vector<Motion<double>>& motion, std::vector<char> left_out);
 
   [[nodiscard]] const std::vector<SharingGroup>& groups() const { return groups_; }
-  /// Returns true if an element sticks that can slip; if not, no pose has groups.
+  /// Returns true if an element that can slip sticks. If none does, there are no groups in any pose.
   [[nodiscard]] bool has_friction() const { return has_friction_; }
-  /// Returns the index of the group of a friction element; −1 if its wrench is unique.
+  /// Returns the index of the group that contains the friction element; −1 if its wrench is unique.
   [[nodiscard]] int group_of(int friction) const { return group_of_[friction]; }
-  /// Returns true if the null vectors are still null vectors, and the same rows are left out.
+  /// Returns true if the null vectors are still null vectors at these poses, and the same rows are left out.
   [[nodiscard]] bool holds_at(const std::vector<Motion<double>>& motion, const std::vector<char>& left_out) const;
 
-  /// Returns a measure of incompatible motion: dependent rows can stick together only if Σ n_r (J_r v − target) = 0 for each null vector n,
-  /// and the same for accelerations. This is violated for the feet of a rocking box, or for a drive and friction on the same coordinate.
-  /// Above 1: violated by more than rounding, so the elements cannot all stick.
+  /// Returns a measure of how far the elements of a group cannot stick together. Dependent rows can only if Σ n_r (J_r v − target) = 0 for
+  /// each null vector n, and the same for accelerations. The feet of a rocking box violate this, and so do a drive and friction on the same
+  /// coordinate. Above 1 the violation exceeds rounding errors.
   [[nodiscard]] double discord(int group, const Evaluation& evaluation, const double* acceleration) const;
-  /// Computes the least utilisation of every group for the wrenches in `friction_force`.
+  /// Computes the least utilisation of every group. `friction_force` contains one solution of the equations.
   void solve(const Evaluation& evaluation, const double* friction_force);
-  /// Returns the elements of `group` that slip when it gives way. Precondition: solve().
+  /// Returns the elements of `group` that slip when its least utilisation exceeds 1. Precondition: solve().
   [[nodiscard]] std::vector<Release> releases(int group) const;
-  /// Replaces the multipliers by the distribution to be reported. Precondition: solve(); both arrays contain one valid distribution.
+  /// Replaces the multipliers in both arrays, which contain one solution of the equations, by the distribution that is reported.
+  /// Precondition: solve().
   void settle(double* row_force, double* friction_force) const;
 
 private:
-  /// An active row; `slot` is an index in row_force, or in friction_force for friction.
+  /// An active row. `slot` is an index in friction_force for friction, otherwise in row_force.
   struct HeldRow {
     const RowSpec* spec = nullptr;
     int friction = -1, slot = 0;
     bool is_bounded = false;
     double norm = 0.0, mobility = 0.0;
   };
-  /// Connected bodies with the rows between them and the null vectors; those that load friction come first.
+  /// A set of connected bodies, with the rows between them and the null vectors. Null vectors that load friction come first.
   struct ConnectedRows {
     std::vector<HeldRow> rows;             ///< rows with bounds (friction) last
     int free_count = 0;                    ///< number of rows without bounds
     MatX null;                             ///< rows × vectors
-    VecX off;                              ///< per vector: relative residual of Jᵀ n in the pose in which it was found
+    VecX off;                              ///< for each null vector n: relative residual of Jᵀ n in the pose in which it was found
     int shared_count = 0;                  ///< number of vectors that load friction
-    MatX settle;                           ///< for the other vectors: coefficients that minimise the multipliers of unbounded rows
-    std::vector<int> groups;               ///< groups in this part
-    std::vector<std::vector<int>> columns; ///< per group: its vectors
+    MatX settle;                           ///< coefficients of the other vectors that minimise the multipliers of unbounded rows
+    std::vector<int> groups;               ///< indices of the groups among these bodies
+    std::vector<std::vector<int>> columns; ///< for each group, the indices of its null vectors
   };
   void analyze(ConnectedRows& part, const std::vector<Motion<double>>& motion, std::vector<int>& body_index);
   [[nodiscard]] VecX off_balance(const ConnectedRows& part, const std::vector<Motion<double>>& motion) const;

@@ -78,7 +78,7 @@ void Mechanism::close(int cluster_count, const Vec2& gravity, const SchurRow* ro
     if (m.parent < 0 && !m.is_free) link.o = m.pin;
     w.links.push_back(link);
   }
-  // From the leaves to the root; `beyond`: largest distance from its pin of anything attached to a member.
+  // `beyond`, computed from the leaves to the root: largest distance from a member's pin of anything attached to the member.
   std::vector<double> beyond(members.size(), 0.0);
   for (std::size_t i = members.size(); i-- > 0;) {
     const Link& link = w.links[i];
@@ -122,7 +122,7 @@ void Mechanism::unpack(const double* q, const double* v, double* cluster_q, doub
   }
 }
 
-// A rod points from its own pin to that of its end.
+// The angle of a rod is that from its own pin to the pin at its end.
 void Mechanism::pack(const double* cluster_q, const double* cluster_v, double* q, double* v) const {
   Link* const links = work_->packed.data();
   for (std::size_t i = 0; i < members.size(); ++i) {
@@ -135,7 +135,7 @@ void Mechanism::pack(const double* cluster_q, const double* cluster_v, double* q
       }
     } else {
       q[k] = v[k] = 0.0;
-      MechanismWork::turn(links[i], links, q, v); // required for the position of its pin
+      MechanismWork::turn(links[i], links, q, v); // the positions of pins of later members depend on this
       const Member& end = members[i + 1];
       const double* const bq = cluster_q + 3 * end.cluster;
       const double* const bv = cluster_v + 3 * end.cluster;

@@ -115,7 +115,8 @@ private:
         if (k >= 0) hinges_at_[k].pop_back();
   }
 
-  // Builds the tree: breadth-first over pins from the ground, then over a rod, or from a free member, to clusters that pins do not reach.
+  // Builds the tree of an island and keeps it if joint coordinates are suitable. Breadth-first search over pins from the ground, then over
+  // a rod or from a free member to clusters that pins do not reach.
   void consider(const std::vector<int>& island) {
     if (island.size() > static_cast<std::size_t>(Mechanism::k_most)) return; // each cluster needs at least one coordinate
     for (const int k : island)
@@ -137,8 +138,8 @@ private:
     for (const int k : island) rows += rows_[k];
     for (const int block : used_) rows -= system_.row_blocks[block].count;
     if (used_.empty() || coordinates > Mechanism::k_most || rows > Mechanism::k_most) return;
-    // There are at least as many rows as coordinates, and yet the mechanism moves. Some rows are then redundant, and the distribution of
-    // loads becomes more sensitive to rounding the fewer rows remain. (Model redundant_loop: reactions accurate to 1e-5 instead of 1e-6
+    // There are at least as many rows as coordinates, and yet the mechanism can move, so some rows are redundant. The fewer rows remain,
+    // the more sensitive the distribution of loads becomes to rounding. (Model redundant_loop: reactions accurate to 1e-5 instead of 1e-6
     // within a step.)
     if (rows >= coordinates && choice_ == Coordinates::automatic) return;
     tree_.row_count = rows;
@@ -200,7 +201,8 @@ private:
     tree_.members.push_back(m);
   }
 
-  // Attaches the cluster on `side` to the other one, or to the ground.
+  // Makes the cluster on side `side` of a hinge a member, whose parent is the cluster on the other side, or the ground. A distance joint
+  // adds a rod in between.
   void hang(const Hinge& hinge, int side) {
     const int on = hinge.cluster[1 - side];
     Pair<double> pin{hinge.point[1 - side].x(), hinge.point[1 - side].y()};

@@ -1,4 +1,4 @@
-// Rows of a mechanism in joint coordinates; the same methods as in SchurSolver.
+// Rows of a mechanism in joint coordinates, by the same methods as in SchurSolver.
 #include "mbd/dynamics/dependent_rows.h"
 #include "mbd/dynamics/mechanism_work.h"
 #include "mbd/dynamics/refinement.h"
@@ -54,7 +54,7 @@ void eliminate(const MechanismWork& w, int m, double* x) {
   }
 }
 
-// Computes right − J M⁻¹ Jᵀ x.
+// Computes the residual `right` − J M⁻¹ Jᵀ x.
 void find_lack(const MechanismWork& w, int m, const double* right, const double* x, double* lack) {
   std::array<double, MechanismWork::k_most> response{};
   for (int r = 0; r < m; ++r)
@@ -170,12 +170,12 @@ void Mechanism::keep_rank(double shift) {
   if (dependent_count_ == 0 && smallest_pivot_ >= k_doubtful_pivot) return;
   bool is_in_doubt = smallest_pivot_ < k_doubtful_pivot;
   for (int r = 0; r < row_count; ++r) is_in_doubt = is_in_doubt || (is_dependent(r) && w.own[r] > 0.0);
-  if (!is_in_doubt) { // rows left out act on nothing that can move
+  if (!is_in_doubt) { // the rows left out act on nothing that can move
     out_.assign(row_count, 0);
     for (int r = 0; r < row_count; ++r) out_[r] = can_stay_out_[r] != 0 && is_dependent(r);
     return;
   }
-  std::vector<WeightedRow> in_masses(row_count); // part orthogonal to the pins
+  std::vector<WeightedRow> in_masses(row_count); // part of each row that is orthogonal to the pins
   for (int r = 0; r < row_count; ++r) {
     in_masses[r].row = VecX::Zero(n_);
     for (int p = 0; p < w.patterns[r].count; ++p) {

@@ -1,5 +1,5 @@
-// Variables and operations of a mechanism's evaluation, as a template over double and recorded numbers (mbd/tape). To be included only by
-// the sources of mechanisms and of tracing.
+// Variables and operations of the evaluation of a mechanism, as a template for doubles and recorded numbers (mbd/tape). Only the sources of
+// mechanisms and of recording may include this header.
 #pragma once
 
 #include "mbd/dynamics/mechanism.h"
@@ -19,7 +19,7 @@ template <class S> struct MechanismWorkOf {
     Pair<double> pin, centre, moment;
 
     S c{1.0}, s{0.0}, omega{0.0};
-    Pair<S> o, v, bias; ///< o, v: position and velocity of its pin; bias: acceleration of the pin for s̈ = 0
+    Pair<S> o, v, bias; ///< o, v: position and velocity of its pin; bias: acceleration of its pin for s̈ = 0
     Pair<S> arm, lever, turned_moment;
     Pair<S> force; ///< scratch: total force of everything attached to it
     S couple{0.0};
@@ -31,7 +31,7 @@ template <class S> struct MechanismWorkOf {
     to.y += p.y;
   }
 
-  /// Computes the motion of one link from q and v. Precondition: the links before it in `all` are placed.
+  /// Computes the motion of one member from q and v. Precondition: the members before it in `all` are computed.
   STEPLAP_INLINE static void turn(Link& now, const Link* all, const S* q, const S* v) {
     find_sin_cos(q[now.coordinate], now.s, now.c); // not set_angle(): pinned members rotate too far for its series
     now.omega = v[now.coordinate];
@@ -49,7 +49,7 @@ template <class S> struct MechanismWorkOf {
     now.lever = {now.c * now.centre.x - now.s * now.centre.y, now.s * now.centre.x + now.c * now.centre.y};
   }
 
-  /// Computes all links, and the motions of those that are clusters.
+  /// Computes all members, and writes the motions of those that are clusters.
   STEPLAP_INLINE void place(const S* q, const S* v, Motion<S>* motion) {
     Link* const first = links.data();
     Link* const end = first + links.size();
@@ -68,7 +68,7 @@ template <class S> struct MechanismWorkOf {
     }
   }
 
-  /// x = L⁻ᵀ x, for x that is nonzero only at the coordinates of `pattern`, outermost first.
+  /// Computes x = L⁻ᵀ x in place, for x that is nonzero only at the coordinates in `pattern`, outermost first.
   STEPLAP_INLINE void whiten(S* x, const std::uint8_t* pattern, int count) const {
     for (int p = 0; p < count; ++p) {
       const int i = pattern[p];
@@ -78,7 +78,7 @@ template <class S> struct MechanismWorkOf {
     }
   }
 
-  // M = Lᵀ D L and M⁻¹ x for a chain, in which each coordinate is below the one before it, so that M is full.
+  // Factorisation M = Lᵀ D L, and M⁻¹ x, for a chain, in which each coordinate is below the one before it. M is then full.
   template <int N> STEPLAP_INLINE void factor_chain() {
     const int size = N > 0 ? N : n;
     S* const h = mass.data();
@@ -105,7 +105,7 @@ template <class S> struct MechanismWorkOf {
     }
   }
 
-  /// Computes M below the diagonal for the placed links.
+  /// Computes the elements of M below the diagonal, at the present motion.
   STEPLAP_INLINE void fill_mass() {
     S* const h = mass.data();
     constexpr int k = k_most;
@@ -125,7 +125,7 @@ template <class S> struct MechanismWorkOf {
       h[y * k + x] = 0.0;
     }
   }
-  /// Computes Lᵀ D L of M for a general tree.
+  /// Factorises M = Lᵀ D L for a general tree.
   STEPLAP_INLINE void factor_tree() {
     S* const h = mass.data();
     for (int r = n - 1; r >= 0; --r) {
@@ -149,7 +149,7 @@ template <class S> struct MechanismWorkOf {
     }
   }
 
-  /// Computes Tᵀ(Q − m b); `force` is per slot.
+  /// Computes the generalised forces Tᵀ(Q − m b); `body_force` has one entry per slot.
   STEPLAP_INLINE void load(const BodyForceOf<S>* body_force, S* s) {
     Link* const first = links.data();
     Link* const end = first + links.size();
@@ -180,7 +180,7 @@ template <class S> struct MechanismWorkOf {
   STEPLAP_INLINE void expand(const S* s, S* cluster_a) {
     Link* const first = links.data();
     Link* const end = first + links.size();
-    for (Link* now = first; now != end; ++now) { // `force` is used for the acceleration of its pin
+    for (Link* now = first; now != end; ++now) { // `force` contains the acceleration of its pin here
       if (now->parent >= 0) {
         const Link& above = first[now->parent];
         const S alpha = s[above.coordinate], w2 = above.omega * above.omega;
@@ -200,7 +200,7 @@ template <class S> struct MechanismWorkOf {
   }
 
   // --- rows -----------------------------------------------------------------------------------------
-  /// Converts the gradient of a row to the coordinates s. `member_of`: member index of its clusters, per side.
+  /// Converts the gradient of a row from cluster coordinates to the coordinates s. `member_of`: member index of the cluster on each side.
   STEPLAP_INLINE void reduce(const SchurRowOf<S>& row, const int* member_of, S* out) const {
     const Link* const first = links.data();
     for (int side = 0; side < 2; ++side) {
@@ -219,7 +219,7 @@ template <class S> struct MechanismWorkOf {
     for (int p = 0; p < patterns[r].count; ++p) gradient[r * k_most + patterns[r].at[p]] = 0.0;
   }
 
-  /// Computes L⁻ᵀJᵀ, D⁻¹L⁻ᵀJᵀ and J_c W J_cᵀ of row r.
+  /// Computes L⁻ᵀJᵀ, D⁻¹L⁻ᵀJᵀ and the diagonal element J_c W J_cᵀ for row r.
   STEPLAP_INLINE void whiten_row(std::size_t r, const SchurRowOf<S>& row) {
     const S* const j = gradient.data() + r * k_most;
     S* const w = white.data() + r * k_most;
@@ -235,8 +235,8 @@ template <class S> struct MechanismWorkOf {
     own[r] = sum;
   }
 
-  /// Factorises A = J M⁻¹ Jᵀ row by row: below the diagonal first L D, then L. `raise(d, own)` adds damping to a pivot, `invert(r, d, own)`
-  /// returns its inverse, or 0 to leave out row r. N is the number of rows if it is known at compile time, otherwise 0.
+  /// Factorises A = J M⁻¹ Jᵀ row by row; below the diagonal L D is stored first, then L. raise(d, own) returns a pivot with damping.
+  /// invert(r, d, own) returns its inverse, or 0 to leave out row r. N is the number of rows if it is known at compile time, otherwise 0.
   template <int N, class Raise, class Invert> STEPLAP_INLINE void factor_rows(int count, const Raise& raise, const Invert& invert) {
     const int m = N > 0 ? N : count;
     const Shared* pair = shared.data();
@@ -297,7 +297,7 @@ template <class S> struct MechanismWorkOf {
   std::vector<Link> links;
   mutable std::vector<Link> packed; ///< scratch of pack() and unpack(), which do not change the placed pose
   std::array<S, k_most> placed_q{}, placed_v{};
-  std::array<std::int8_t, k_most> up{};   ///< next coordinate above; −1: none
+  std::array<std::int8_t, k_most> up{};   ///< the coordinate next nearer to the root; −1: none
   std::array<std::uint8_t, k_most> all{}; ///< all coordinates, the last first
   std::array<S, k_most * k_most> mass{};  ///< M, then L below the diagonal
   std::array<S, k_most> inverse_d{};      ///< 1/D of M
@@ -305,7 +305,7 @@ template <class S> struct MechanismWorkOf {
   // Rows have k_most numbers each.
   struct RowPattern {
     std::uint8_t count = 0;
-    std::array<std::uint8_t, k_most> at{}; ///< coordinates that it depends on, or that are above those, the last first
+    std::array<std::uint8_t, k_most> at{}; ///< coordinates of its gradient and those nearer to the root, the last first
   };
   std::vector<RowPattern> patterns;
   struct Shared {

@@ -1,5 +1,5 @@
-// Matrices of the mode problem: the relative accelerations of the candidates' rows by unit forces along each other, with all other elements
-// in their present modes.
+// Computes the matrices of the mode problem: the relative accelerations along the rows of the candidates, and those caused by unit forces
+// along each other row, with all other elements in their present modes.
 #include "mbd/dynamics/dynamics.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 constexpr double k_least_acceleration = 1e-11;
 constexpr double k_rounded_share = 1e-12;
 
-// Relative acceleration along a row for accelerations `a` of the clusters, and the size of its terms.
+// Relative acceleration along a row for the accelerations `a` of the clusters, and the sum of its absolute terms.
 struct AlongRow {
   double acceleration = 0.0, terms = 0.0;
 };
@@ -53,8 +53,8 @@ void Dynamics::relative_motion(int f, const double* dy, double* rate, double* ac
   }
 }
 
-// Row of a candidate in the coordinates of a layout: by clusters or, for a side in a mechanism, by the mechanism's coordinates. A row
-// between two clusters of one mechanism is stored completely in its first side.
+// Row of a candidate in the coordinates of a layout: those of clusters or, for a side in a mechanism, those of the mechanism. A row between
+// two clusters of one mechanism is stored in its first side only.
 struct Dynamics::CandidateRow {
   SchurRow row;
   const Mechanism* mechanism[2] = {nullptr, nullptr};
@@ -66,7 +66,7 @@ struct Dynamics::CandidateRow {
       if (row.body[side] < layout.absolute_count) continue;
       mechanism[side] = &layout.mechanism_of_cluster(row.body[side]);
       SchurRow half = row;
-      if (side == 1 && mechanism[0] == mechanism[1]) { // contained in the first side
+      if (side == 1 && mechanism[0] == mechanism[1]) { // the first side contains both
         mechanism[1] = nullptr;
         row.body[1] = -1;
         continue;

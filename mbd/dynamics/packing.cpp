@@ -5,7 +5,7 @@
 
 namespace steplap {
 
-// Computes the coordinates of clusters. Those in mechanisms are converted from `all_q` and `all_v`, 3 numbers for each cluster.
+// Writes the coordinates of clusters to y. Those in mechanisms are converted from `all_q` and `all_v`, 3 numbers for each cluster.
 void Dynamics::pack(const State& state, double* y) const {
   const int n = coordinate_count();
   std::fill(y, y + 2 * n, 0.0);
@@ -30,7 +30,7 @@ void Dynamics::pack(const State& state, double* y) const {
       std::copy(bv, bv + 3, v);
       continue;
     }
-    // The cluster's angle is that of its root. Its velocity conserves the momentum of the bodies (exact for a rigid motion).
+    // The angle of a cluster is that of its root. Its velocity conserves the momentum of the bodies, and is exact for a rigid motion.
     if (static_cast<int>(i) == cluster.root) q[2] = bq[2];
     const double share = system_.bodies[i].mass / cluster.mass;
     const Vec2 lever = rotated(place.offset, state.q[3 * cluster.root + 2]);
@@ -40,7 +40,7 @@ void Dynamics::pack(const State& state, double* y) const {
     v[1] += share * bv[1];
     v[2] += (system_.bodies[i].inertia * bv[2] + system_.bodies[i].mass * (lever.x() * bv[1] - lever.y() * bv[0])) / cluster.inertia;
   }
-  // The angular momentum refers to the cluster's centre, where Σ m lever = 0, so no further term is needed.
+  // Angular momentum needs no further term: it refers to the cluster's centre, where Σ m lever = 0.
   if (layout_->has_mechanisms()) {
     std::copy_n(all_q, 3 * layout_->absolute_count, y);
     std::copy_n(all_v, 3 * layout_->absolute_count, y + n);

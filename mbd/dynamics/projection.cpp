@@ -1,5 +1,5 @@
-// Dynamics: projection of states onto the constraints, rates near singular positions, and removal of the constrained part of error
-// estimates there.
+// Dynamics: projection of states onto the constraints; rates near singular positions; removal of the constrained part of error estimates
+// there.
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/dynamics/dynamics.h"
@@ -15,27 +15,27 @@ namespace {
 
 constexpr int k_max_projection_iterations = 60;
 constexpr int k_iterations_per_factorization = 3;
-// Upper limit of the damping of a projection near a singular position, as a fraction of the diagonal.
+// Largest damping of a projection near a singular position, as a fraction of the diagonal.
 constexpr double k_largest_damping = 1e-3;
-// Below this relative pivot the constrained part of error estimates is removed (remove_constrained_error). Otherwise tight tolerances could
-// not be reached near a singular position, where accelerations across the constraints are mostly rounding.
+// Relative pivot below which the constrained part of error estimates is removed (remove_constrained_error). Near a singular position
+// accelerations across the constraints are mostly rounding, and tight tolerances could not be reached otherwise.
 constexpr double k_removal_pivot = 1e-2;
-// A factorisation is used again if it has reduced the residual to this fraction.
+// A factorisation is used again if it reduced the residual to this fraction or less.
 constexpr double k_chord_worth = 0.1;
-// Below this relative pivot every iteration factorises again, and steps are damped.
+// Relative pivot below which every iteration factorises again, and iterations are damped.
 constexpr double k_chord_pivot = 1e-2;
-// Rounding error of a residual in units of epsilon times the size of the scene: a position is a sum of a few terms.
+// Rounding error of a residual, in units of epsilon times the size of the model: a position is a sum of a few terms.
 constexpr double k_rounded_terms = 32.0;
-// A velocity residual above this fraction of the largest rate (or of 1 m/s) is not rounding.
+// Fraction of the largest rate (or of 1 m/s) above which a velocity residual is not rounding.
 constexpr double k_rate_left = 1e-6;
-// A projection "as closely as rounding allows" aims at this fraction of the rounding error, and continues for some iterations after the
-// first that brings no improvement.
+// A projection "as far as rounding allows" aims at the fraction k_close of the rounding error. It makes some more iterations after the
+// first one without improvement.
 constexpr double k_close = 1.0 / 16.0;
 int patience_for(double tolerance, double rounding) { return tolerance <= k_close * rounding ? 3 : 0; }
 
 } // namespace
 
-// Return the rounding errors of positions for coordinates y, and of rates. Positions in mechanisms are those of the last evaluation.
+// Return the rounding errors of positions at y, and of rates. Positions in mechanisms are those of the last evaluation.
 double Dynamics::place_rounding(const double* y) const {
   double size = 0.0;
   for (int i = 0; i < coordinate_count(); ++i) size = std::max(size, std::abs(y[i]));
@@ -66,7 +66,7 @@ Residual Dynamics::constraint_values(double t, const double* y) {
 
 Residual Dynamics::residual(double t, const double* y) {
   if (layout_->active.empty()) return {};
-  pending_.end(); // by-products are invalid from here on
+  pending_.end(); // by-products are invalid from now on
   rows_.forget_factors();
   return constraint_values(t, y);
 }
@@ -96,7 +96,7 @@ void Dynamics::fail_velocities(double t) const {
 }
 
 bool Dynamics::is_near_singular() const {
-  // False after an evaluation by code, which has no factors; code is not used so near to a singular position.
+  // The result is false after an evaluation by code, which has no factors. Code is not used so near a singular position.
   return !layout_->active.empty() && rows_.is_factored() && layout_->smallest_pivot() < k_removal_pivot;
 }
 
@@ -141,7 +141,7 @@ Residual Dynamics::project_rows(double t, double* y, double tolerance) {
     y[n + k] = kinematics_.lock_target(i).rate;
   }
   if (layout.active.empty()) return {};
-  // At a distance of kilometres from the origin a position is not accurate to a picometre.
+  // Far from the origin, positions are accurate only to their rounding: at kilometres not to a picometre.
   const bool is_close = tolerance == 0.0;
   const Residual first = constraint_values(t, y);
   double farthest = 0.0;
@@ -161,9 +161,10 @@ void Dynamics::project_velocities(double t, double* y) {
   }
 }
 
-// Newton iteration that keeps the factorisation of the last evaluation while convergence is fast. Near a singular position it factorises in
-// each iteration. Undamped steps would have the length residual / distance from the singularity; damping by the residual keeps them short
-// and preserves quadratic convergence (J. Fan, Y. Yuan, Computing 74 (2005) 23, for Levenberg–Marquardt with this choice).
+// Brings positions to the constraints by Newton's method, with the factorisation of the last evaluation while convergence is fast. Near a
+// singular position each iteration factorises. Undamped iterations would then have the length residual / distance from the singularity.
+// Damping by the residual keeps them short and preserves quadratic convergence (J. Fan, Y. Yuan, Computing 74 (2005) 23, for
+// Levenberg–Marquardt with this choice).
 bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual& now) {
   Layout& layout = *layout_;
   int patience = patience_for(tolerance, place_rounding(y));
@@ -183,8 +184,8 @@ bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual& 
   return true;
 }
 
-// The velocity correction is the solution of a linear system. With few rows far from a singular position one iteration leaves only
-// rounding, and the residual is not computed again.
+// Brings velocities to the constraints. The correction solves a linear system, so that with few rows far from a singular position one
+// iteration leaves only rounding, and the residual is not computed again.
 void Dynamics::reach_velocities(double t, double* y, Residual now, double tolerance) {
   int patience = patience_for(tolerance, rate_rounding(y));
   for (int iteration = 0; now.velocity > tolerance && iteration < k_max_projection_iterations; ++iteration) {
@@ -193,16 +194,16 @@ void Dynamics::reach_velocities(double t, double* y, Residual now, double tolera
     rows_.take_away(rows_.rate_off().data(), y + coordinate_count());
     if (layout_->schur.is_small() && layout_->smallest_pivot() >= SchurSolver::k_refined_pivot && !layout_->is_singular()) return;
     now = constraint_values(t, y);
-    if (now.velocity >= 0.5 * before && --patience < 0) break; // rounding errors of fast motions
+    if (now.velocity >= 0.5 * before && --patience < 0) break; // the rest is rounding of fast motions
   }
   double fastest = 0.0;
   for (int i = 0; i < coordinate_count(); ++i) fastest = std::max(fastest, std::abs(y[coordinate_count() + i]));
   if (!(now.velocity <= tolerance + k_rate_left * (1.0 + fastest))) fail_velocities(t);
 }
 
-// Near a singular position the distance of a stage from the constraints, a power of the step size, is divided by the distance from the
-// singularity, so that accelerations at the stage itself would be unbounded. The rates of the nearest state on the constraints are as
-// smooth, and equal to the rates proper at the ends of the step.
+// Computes the rates of the nearest state on the constraints. Near a singular position, accelerations at the stage itself would be
+// unbounded, because the distance of a stage from the constraints, a power of the step size, is divided by the distance from the
+// singularity. The rates of the nearest state are as smooth, and at the ends of the step they are the rates proper.
 void Dynamics::rates_nearby(double t, const double* y, double* dy) {
   std::copy(y, y + dimension(), projected_state_.begin());
   Residual off = constraint_values(t, y);
@@ -213,7 +214,7 @@ void Dynamics::rates_nearby(double t, const double* y, double* dy) {
   bool is_placed = reach_positions(t, projected_state_.data(), place_rounding(y), off);
   try {
     if (is_placed) reach_velocities(t, projected_state_.data(), off, rate_rounding(y));
-  } catch (const ElementFailure&) { // for a stage far off; the error estimate of the step will reject it if necessary
+  } catch (const ElementFailure&) { // a stage far off the constraints; if this matters, the error estimate rejects the step
     is_placed = false;
   }
   rates_at(t, is_placed ? projected_state_.data() : y, dy);

@@ -59,8 +59,7 @@ void compute_edge_geometry(const System& system, const Layout& layout, const Sta
 
 void Reactions::add_carried(const RowSpec& spec, double lambda) { take_carried(*layout_, spec, lambda, motion_, wrench_.data()); }
 
-// Computes the forces of the pins and rods of mechanisms, which are not rows, from the wrenches missing in the equations of motion of the
-// members.
+// Computes the forces of the pins and rods of mechanisms, which are not rows, from the equations of motion of the members.
 void Reactions::find_pins(const double* cluster_a, const double* lambda) {
   const Layout& layout = *layout_;
   for (const Mechanism& mechanism : layout.mechanisms) {

@@ -7,9 +7,9 @@
 
 namespace steplap {
 
-/// Repeats x += A⁻¹ (right − A x) (n numbers) while each correction is less than half of the one before, at most four times.
-/// `find_correction(x)` returns the correction; it must evaluate A x from the factors of A = J W Jᵀ one after the other, so that its
-/// rounding errors are those of J and not those of A.
+/// Repeats x += A⁻¹ (right − A x), n numbers, while each correction is less than half of the one before, at most four times.
+/// find_correction(x) returns the correction. It must evaluate A x by the factors of A = J W Jᵀ one after the other, so that its rounding
+/// errors are those of J and not those of A.
 template <class FindCorrection> void refine_solution(int n, double* x, const FindCorrection& find_correction) {
   constexpr int k_max_refinements = 4;
   double previous = std::numeric_limits<double>::infinity();

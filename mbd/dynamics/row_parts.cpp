@@ -1,7 +1,7 @@
-// Rows over more than two bodies: contributions of the parts beyond the first to the equations (row.h, layout.h).
+// Rows over more than two bodies: contributions of the second and further parts to the equations (row.h, layout.h).
 //
-// Gradient, bias and value of such a row are sums over its parts. Each part is filled in like a row between two bodies, in ground axes, and
-// has the multiplier of its row.
+// Gradient, bias and value of such a row are sums over its parts. Each part is computed like a row between two bodies, in ground axes. All
+// parts have the multiplier of the row.
 #include "mbd/dynamics/constraint_solution.h"
 #include "mbd/dynamics/row_pull.h"
 

@@ -27,8 +27,8 @@ template <class S> STEPLAP_INLINE RowPull<S> pull_along_axis(const RowSpec& row,
   return p;
 }
 
-// SlideMeasure, with unit vector s along the contact axis, α = n·s, gap δ along s and the contact point at r relative to a's centre. The
-// unit force on a is g = −ẑ×s/α at r − δ s. r·s and r×s are constant in a.
+// Gradient and bias of a SlideMeasure. Let s be the unit vector along the contact axis, α = n·s, δ the gap along s, and r the position of
+// the contact point relative to a's centre. The unit force on a is g = −ẑ×s/α at r − δ s; r·s and r×s are constant in a.
 //
 //   couple on a = (δ − r·s)/α,  rate = g·v + ω · couple,  bias = ω (2 (v·s − rate β) + ω r×s)/α,  β = s × n
 template <class S> STEPLAP_INLINE RowPull<S> pull_along_slide(const RowSpec& row, const Motion<S>& link) {
@@ -45,7 +45,7 @@ template <class S> STEPLAP_INLINE RowPull<S> pull_along_slide(const RowSpec& row
   return p;
 }
 
-/// Sets J and W J for one side of a row.
+/// Sets J and W J on one side of a row for a unit force (fx, fy) and its moment `couple`.
 template <class S> STEPLAP_INLINE void set_gradient(SchurRowOf<S>& row, int side, const S& fx, const S& fy, const S& couple) {
   const double* const w = row.w[side];
   S* const j = row.j[side];
@@ -70,7 +70,7 @@ template <class S> STEPLAP_INLINE S less_accelerations(const SchurRowOf<S>& row,
   return right;
 }
 
-/// Fills in a row between bodies that are alone in their clusters, or the ground. Returns γ.
+/// Computes J and W J of a row between bodies that are alone in their clusters, or the ground. Returns γ.
 template <class S> STEPLAP_INLINE S pull_simple_row(const ActiveRow& active, SchurRowOf<S>& row, const Motion<S>* motion) {
   const Motion<S>& link = motion[active.link];
   const Motion<S>& b = motion[active.spec->b];
@@ -83,20 +83,21 @@ template <class S> STEPLAP_INLINE S pull_simple_row(const ActiveRow& active, Sch
 
 // --- rows of any measure, between any clusters --------------------------------------------------------
 
-/// Corrects the bias for a body at distance `off` from its cluster's centre, which has the acceleration −ω² off when the cluster has none.
+/// Adds the centripetal term to the bias, for a body at distance `off` from its cluster's centre: if the cluster has no acceleration, the
+/// body has the acceleration −ω² off.
 template <class S> STEPLAP_INLINE void add_centripetal(int side, const Pair<S>& direction, const S& omega, const Pair<S>& off, S& bias) {
   const S term = omega * omega * dot(direction, off);
   if (side == 0) bias -= term;
   else bias += term;
 }
 
-/// Rotates a measure from b's axes to ground axes.
+/// Returns the measure with its vectors rotated from b's axes to ground axes.
 template <class S> [[nodiscard]] STEPLAP_INLINE MeasureValue<S> turned(MeasureValue<S> m, const Motion<S>& b) {
   for (Pair<S>* p : {&m.direction, &m.lever_a, &m.lever_b}) *p = {b.c * p->x - b.s * p->y, b.s * p->x + b.c * p->y};
   return m;
 }
 
-/// Sets J and W J of a row, or of a part of one, from its measure m in ground axes. With `WithBias` m.bias becomes the bias in the
+/// Sets J and W J of a row, or of one part of it, from its measure m in ground axes. With `WithBias`, m.bias becomes the bias in the
 /// coordinates of the clusters.
 template <bool WithBias, class S>
 STEPLAP_INLINE void put_in_clusters(const Layout& layout, const RowSpec& spec, const Motion<S>* motion, MeasureValue<S>& m,
@@ -118,7 +119,7 @@ STEPLAP_INLINE void put_in_clusters(const Layout& layout, const RowSpec& spec, c
   }
 }
 
-/// Fills in an active row with any measure. Precondition: row.body and row.w are set.
+/// Computes J and W J of an active row with any measure. Returns the measure. Precondition: row.body and row.w are set.
 template <bool WithBias, class S>
 STEPLAP_INLINE MeasureValue<S> load_row(const Layout& layout, const ActiveRow& active, const Motion<S>* motion, SchurRowOf<S>& row) {
   const Motion<S>& link = motion[active.link];
@@ -142,14 +143,15 @@ STEPLAP_INLINE MeasureValue<S> load_row(const Layout& layout, const ActiveRow& a
   return m;
 }
 
-/// Fills in an active row for an evaluation of accelerations. Returns γ.
+/// Computes J and W J of an active row, for an evaluation of accelerations. Returns γ.
 template <class S> STEPLAP_INLINE S pull_row(const Layout& layout, const ActiveRow& active, const Motion<S>* motion, SchurRowOf<S>& row) {
   if (active.pull == RowPullKind::angle) return S(0.0);
   if (active.pull == RowPullKind::other) return -load_row<true>(layout, active, motion, row).bias;
   return pull_simple_row(active, row, motion);
 }
 
-/// Fills in part i of the rows over more than two bodies. With `WithBias` the bias is that in the coordinates of the clusters.
+/// Computes J and W J of part i of the rows over more than two bodies, and returns its measure. With `WithBias`, its bias is that in the
+/// coordinates of the clusters.
 template <bool WithBias, class S>
 STEPLAP_INLINE MeasureValue<S> load_part(const Layout& layout, std::size_t i, const Motion<S>* motion, SchurRowOf<S>* rows) {
   const RowSpec& part = *layout.part_specs[i];
@@ -158,17 +160,17 @@ STEPLAP_INLINE MeasureValue<S> load_part(const Layout& layout, std::size_t i, co
   return m;
 }
 
-/// Adds the parts' contributions to γ, `right`.
+/// Computes all such parts and adds their contributions to γ in `right`.
 template <class S> void pull_parts(const Layout& layout, const Motion<S>* motion, SchurRowOf<S>* rows, S* right) {
   for (std::size_t i = 0; i < layout.parts.size(); ++i) right[layout.parts[i].of] -= load_part<true>(layout, i, motion, rows).bias;
 }
 
-/// Subtracts the parts' contributions to J a from `right`, for accelerations `a` of the clusters.
+/// Subtracts the parts' contributions to J a from `right`, for the accelerations `a` of the clusters.
 template <class S> void take_part_accelerations(const Layout& layout, const SchurRowOf<S>* rows, const S* a, S* right) {
   for (const SchurPart& part : layout.parts) right[part.of] = less_accelerations(rows[part.row], right[part.of], a);
 }
 
-/// a += W Jᵀ λ for the parts.
+/// Adds the parts' contributions to W Jᵀ λ to the accelerations `a`.
 template <class S> void add_part_responses(const Layout& layout, const SchurRowOf<S>* rows, const S* lambda, S* a) {
   for (const SchurPart& part : layout.parts) {
     const SchurRowOf<S>& row = rows[part.row];
@@ -178,7 +180,7 @@ template <class S> void add_part_responses(const Layout& layout, const SchurRowO
   }
 }
 
-/// a += W Jᵀ λ for one side of a row. Only θ is nonzero for a constant row.
+/// Adds W Jᵀ λ of one side of a row to the accelerations `a`. A constant row acts on θ only.
 template <class S> STEPLAP_INLINE void add_response(const SchurRowOf<S>& row, int side, const S& lambda, S* a) {
   S* const ak = a + 3 * row.body[side];
   const S x = row.wj[side][0] * lambda, y = row.wj[side][1] * lambda, m = row.wj[side][2] * lambda;

@@ -30,11 +30,11 @@ namespace {
 
 using Pattern = Eigen::SparseMatrix<double>;
 
-// If all relative pivots are above this limit, no row is nearly dependent on others, and dependent_friction() is not needed. The limit
-// allows for SchurSolver::k_dependent² and for rows that contribute only 1/100 to a dependence.
+// If all relative pivots are above this limit, no row nearly depends on others, and dependent_friction() is not called. The limit allows
+// for SchurSolver::k_dependent² and for rows that contribute only 1/100 to a dependence.
 constexpr double k_doubtful_pivot = 1e-8;
 
-// Returns a component of the gradient in the metric of W: the squared length of the gradient is the row's diagonal element of A.
+// Returns a component of the gradient in the metric of W, in which the squared length of the gradient is the row's diagonal element of A.
 double weighted(const SchurRow& row, int side, int c) { return row.w[side][c] > 0.0 ? row.j[side][c] * std::sqrt(row.w[side][c]) : 0.0; }
 
 double squared_length(const SchurRow& row) {
@@ -67,7 +67,7 @@ std::vector<SchurCoupling> couplings(const std::vector<SchurRow>& rows, int n, c
   return result;
 }
 
-// Returns for each entry of `rows` the row that it is, or is a part of.
+// Returns for each entry of `rows` the row to which it belongs: itself, or that of which it is a part.
 std::vector<int> rows_of(std::size_t count, const std::vector<SchurPart>& parts) {
   std::vector<int> of(count);
   std::iota(of.begin(), of.end(), 0);
@@ -93,7 +93,8 @@ std::vector<int> fill_reducing_order(int n, const std::vector<SchurCoupling>& co
 
 namespace {
 
-// Returns the index of a member's number as a double from the start of the first row.
+// Returns the position of a number in the array of rows, in doubles from the start of the first row. `member`: byte offset of the array in
+// SchurRow.
 std::uint16_t place_in_rows(int row, std::size_t member, int side) {
   const std::size_t at = (row * sizeof(SchurRow) + member) / sizeof(double) + 3 * side;
   if (at > std::numeric_limits<std::uint16_t>::max()) // only parts of rows can have such a large index
@@ -120,7 +121,7 @@ void SchurSolver::list_dense_products(const std::vector<SchurRow>& rows, const s
   }
 }
 
-// Upper triangle of the permuted matrix by columns: the products that make up A(i, k), i ≤ k.
+// Upper triangle of the permuted matrix by columns, with the products whose sum is A(i, k), i ≤ k.
 struct SchurSolver::Columns {
   std::vector<std::vector<Product>> of_rows;
   std::vector<std::vector<PartProduct>> of_parts; // empty without parts
@@ -236,7 +237,7 @@ void SchurSolver::decide_rank(const std::vector<char>& is_friction, const std::v
 void SchurSolver::keep_rank(const std::vector<SchurRow>& rows, double shift) {
   is_rank_open_ = false;
   if (dependent_count_ == 0 && smallest_pivot_ >= k_doubtful_pivot) return;
-  if (!is_in_doubt(rows)) { // rows left out act on nothing that can move
+  if (!is_in_doubt(rows)) { // the rows left out act on nothing that can move
     out_.assign(n_, 0);
     for (int r = 0; r < n_; ++r) out_[r] = can_stay_out_[r] != 0 && is_dependent(r);
     return;
@@ -275,7 +276,7 @@ void SchurSolver::factor(const std::vector<SchurRow>& rows, double shift) {
     keep_rank(rows, shift);
 }
 
-// A single row cannot be nearly dependent on others.
+// Factorises the equation of a single row, which cannot depend on others.
 template <> void SchurSolver::factor_dense<1>(const std::vector<SchurRow>& rows) {
   const auto* const first = reinterpret_cast<const double*>(rows.data());
   double sum = dense_constant_[0];
@@ -315,7 +316,7 @@ void SchurSolver::factor_as_is(const std::vector<SchurRow>& rows, double shift) 
   }
 }
 
-// N is the number of rows if it is known at compile time (loops are unrolled), otherwise 0.
+// Factorises A as a dense matrix. N is the number of rows if it is known at compile time (loops are then unrolled), otherwise 0.
 template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& rows) {
   dependent_count_ = 0;
   smallest_pivot_ = 1.0;
@@ -343,7 +344,7 @@ template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& row
 void SchurSolver::trace(const std::vector<SchurRowOf<TapeNumber>>& rows, double least_pivot, TapeNumber* x,
                         std::vector<TracedPivot>& pivots) const {
   if (!is_small()) return trace_sparse(rows, least_pivot, x, pivots);
-  // Decodes an index of a double in the rows: row and side.
+  // Converts a position in the array of rows (place_in_rows()) back to the side.
   constexpr std::size_t k_row = sizeof(SchurRow) / sizeof(double);
   const auto side_of = [](std::size_t place, std::size_t member) { return (place % k_row - member / sizeof(double)) / 3; };
   std::array<TapeNumber, k_max_dense * k_max_dense> m;
@@ -371,7 +372,7 @@ void SchurSolver::trace(const std::vector<SchurRowOf<TapeNumber>>& rows, double 
 
 template <int N> void SchurSolver::solve_dense(double* x) const { substitute<N>(dense_.data(), inverse_d_.data(), n_, x); }
 
-// Adds the contributions of the further parts of row k to its entries.
+// Adds the contributions of the further parts of row k to the entries y of row k of A.
 template <class S> void SchurSolver::add_part_products(const std::vector<SchurRowOf<S>>& rows, int k, S* y) const {
   for (int p = part_begin_[k]; p < part_begin_[k + 1]; ++p) {
     const Product& product = part_products_[p].product;
@@ -381,8 +382,8 @@ template <class S> void SchurSolver::add_part_products(const std::vector<SchurRo
   }
 }
 
-// Computes L D Lᵀ row by row. `fill`: scratch, one index per column; `y`: scratch, one number per column, zero before and after. `invert(k,
-// d, diagonal)` returns 1/d, or 0 if the row eliminated in step k is to be left out.
+// Factorises L D Lᵀ row by row. `fill` and `y` are scratch, one entry per column; y is zero before and after. invert(k, d, diagonal)
+// returns 1/d, or 0 if the row eliminated in step k is to be left out.
 template <class S, class Raise, class Invert>
 STEPLAP_INLINE void SchurSolver::eliminate_pattern(const std::vector<SchurRowOf<S>>& rows, int* fill, S* y, S* l, S* inverse_d,
                                                    const Raise& raise, const Invert& invert) const {
@@ -462,7 +463,7 @@ template <class F> void SchurSolver::for_parts(const F& f, const std::vector<Sch
       if (const SchurRow& row = rows[part.row]; row.body[side] >= 0) f(part, row, side, &response_[3 * row.body[side]]);
 }
 
-// Correction: A⁻¹ (right − J (W Jᵀ x)).
+// Refines x by corrections A⁻¹ (right − J (W Jᵀ x)).
 void SchurSolver::refine(const std::vector<SchurRow>& rows, const double* right, double* x) const {
   double* const correction = correction_.data();
   refine_solution(n_, x, [&](const double* now) {
@@ -506,7 +507,7 @@ void SchurSolver::eliminate(double* x) const {
   eliminate_sparse(x);
 }
 
-// x = A⁻¹ x by substitution; y: scratch, one number per row.
+// Solves A x = x₀ in place by substitution. `y`: scratch, one number per row.
 template <class S> STEPLAP_INLINE void SchurSolver::substitute_pattern(const S* l, const S* inverse_d, S* y, S* x) const {
   for (int k = 0; k < n_; ++k) y[k] = x[order_[k]];
   for (int k = 0; k < n_; ++k)

@@ -1,18 +1,18 @@
 // Solver for the constraint equations A λ = r with A = J W Jᵀ, W = diag(1/m, 1/m, 1/J) of each moving body.
 //
-// A is symmetric, positive semidefinite and sparse: two rows are coupled if they share a moving body. Pattern, fill-reducing order and
-// elimination tree are computed once for a set of rows. The factorisation L D Lᵀ then runs over precomputed lists without allocation; for
-// up to eight rows it is dense. If a pivot vanishes relative to its diagonal, the row depends on earlier ones: its multiplier is set to
-// zero, and the row is reported by is_dependent() (LoadSharing computes the distribution of loads on demand).
+// A is symmetric, positive semidefinite and sparse: two rows are coupled if they act on the same moving body. Pattern, fill-reducing order
+// and elimination tree are computed once for a set of rows. The factorisation L D Lᵀ then runs over precomputed lists without allocation;
+// for up to eight rows it is dense. If a pivot vanishes relative to its diagonal, the row depends on earlier ones: its multiplier is set to
+// zero, and is_dependent() returns true for it (LoadSharing computes the distribution of loads when needed).
 //
-// Friction rows that are nearly dependent on others (feet of a box rotated by less than 1e-6 rad) would get meaningless multipliers: the
-// load divided by the tiny independent part of the row, with a relative error of rounding over its square. Such rows are left out. The
-// choice is made once for a set of modes, by orthogonalisation in the metric of W: bilateral rows first, then always the friction row
+// Friction rows that nearly depend on others (feet of a box rotated by less than 1e-6 rad) would get meaningless multipliers: the load
+// divided by the tiny independent part of the row, with a relative error of rounding over its square. Such rows are left out. They are
+// selected once for a set of modes, by orthogonalisation in the metric of W: bilateral rows are taken first, then always the friction row
 // farthest from the span of those taken, until the remaining distance is below k_dependent of its length. The constraints of rows left out
 // are not enforced and have to be monitored (LoadSharing::discord).
 //
 // Near a singular position a pivot is small but not zero. The condition number of A is the square of that of J, so elimination alone would
-// lose twice as many digits as necessary. There the solution is refined iteratively with J W Jᵀ evaluated factor by factor.
+// lose twice as many digits as necessary. Near such positions the solution is refined iteratively, with J W Jᵀ evaluated factor by factor.
 #pragma once
 
 #include "mbd/tape/traced.h"
@@ -27,7 +27,7 @@ namespace steplap {
 /// A row in the coordinates of the clusters of one layout. S is double, or a recorded number (mbd/tape).
 template <class S> struct SchurRowOf {
   int body[2] = {-1, -1};   ///< cluster on either side; −1: the ground
-  bool is_constant = false; ///< j and wj are the same in every pose and nonzero for θ only
+  bool is_constant = false; ///< j and wj are the same in every pose, and nonzero for θ only
   double w[2][3] = {};      ///< inverse masses on either side; 0 for locked coordinates
   S j[2][3] = {};           ///< J: ∂measure/∂(x, y, θ) on either side
   S wj[2][3] = {};          ///< W J
@@ -39,7 +39,7 @@ struct TracedPivot {
   TapeNumber pivot, diagonal;
 };
 
-/// Further part of a row over more than two bodies: rows[row] is not a row itself but a part of rows[of].
+/// A further part of a row over more than two bodies: rows[row] is a part of the row rows[of].
 struct SchurPart {
   int row = 0, of = 0;
 };
@@ -55,26 +55,27 @@ public:
   SchurSolver(SchurSolver&&) noexcept;
   SchurSolver& operator=(SchurSolver&&) noexcept;
 
-  /// `apart`: bodies in which many rows meet are treated separately if this is accurate (hub_solver.h). Requires the inverse masses of the
-  /// rows.
+  /// `apart`: bodies on which many rows act are eliminated separately, if this is accurate (hub_solver.h). This requires the inverse masses
+  /// of the rows.
   enum class HubElimination : unsigned char { as_others, apart };
-  /// Computes the pattern for the first `count` rows, the ones to be solved for, and for their further `parts`, which follow them in
-  /// `rows`. Body −1 couples nothing.
+  /// Computes the pattern for the first `count` rows, whose multipliers are the unknowns, and for their further `parts`, which follow in
+  /// `rows`. Body −1 (the ground) couples nothing.
   void analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts = {},
                HubElimination hubs = HubElimination::as_others);
   void analyze(const std::vector<SchurRow>& rows) { analyze(rows, static_cast<int>(rows.size())); }
   /// Factorises A for the present j and wj, with its diagonal increased by the fraction `shift` (damping). Does not allocate, except the
   /// first time that HubSolver refuses the numbers.
   void factor(const std::vector<SchurRow>& rows, double shift = 0.0);
-  /// Makes the next factorisation decide which of the friction rows are left out. This remains until the next call, because otherwise rows
-  /// could come and go within a step by rounding of a pivot. Rows left out before (`was_out`) stay so up to twice the bound.
+  /// Makes the next factorisation decide which friction rows are left out. The decision remains until the next call of decide_rank():
+  /// otherwise rounding of a pivot could change it within a step. Rows that were left out before (`was_out`) stay out up to twice the
+  /// bound.
   void decide_rank(const std::vector<char>& is_friction, const std::vector<char>& was_out);
-  /// Returns true if no factorisation has followed decide_rank().
+  /// Returns true if decide_rank() was called and no factorisation has followed.
   [[nodiscard]] bool is_rank_open() const { return is_rank_open_; }
   /// Records factor() and solve() on a tape, x = A⁻¹ x, for independent rows with can_be_traced(). The tape is valid while all relative
-  /// pivots are above `least_pivot`. Appends the pivots that smallest_pivot() is computed from.
+  /// pivots are above `least_pivot`. Appends the pivots from which smallest_pivot() is computed to `pivots`.
   void trace(const std::vector<SchurRowOf<TapeNumber>>& rows, double least_pivot, TapeNumber* x, std::vector<TracedPivot>& pivots) const;
-  /// In place: x = A⁻¹ x. `rows` must be those factorised.
+  /// Solves A x = x₀ in place. `rows` must be those of the last factor().
   void solve(const std::vector<SchurRow>& rows, double* x) const;
 
   [[nodiscard]] int size() const { return n_; }
@@ -82,19 +83,19 @@ public:
   [[nodiscard]] bool can_be_traced() const { return n_ <= k_usual_rows; }
   [[nodiscard]] bool is_singular() const { return dependent_count_ > 0; }
   [[nodiscard]] bool is_dependent(int row) const { return inverse_d_[position_[row]] == 0.0; }
-  /// Returns true for a friction row that was decided to be left out.
+  /// Returns true if the friction row is left out.
   [[nodiscard]] bool is_left_out(int row) const { return !out_.empty() && out_[row] != 0; }
-  /// Returns the smallest pivot that was kept, relative to its diagonal, in the last factorisation; near 0 close to a singular position.
-  /// The pivots of a long chain decrease as 1/length in any position, which is corrected for beyond k_usual_rows.
+  /// Returns the smallest pivot that was kept, relative to its diagonal, at the last factorisation; it approaches 0 at a singular position.
+  /// The pivots of a long chain decrease as 1/length in any position; beyond k_usual_rows the result is corrected for this.
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_ * length_; }
   [[nodiscard]] bool is_near_singular() const { return smallest_pivot() < k_refined_pivot; }
 
-  /// A relative pivot below this counts as zero.
+  /// Relative pivot below which a pivot counts as zero.
   static constexpr double k_pivot_tolerance = 1e-13;
-  /// Below this relative pivot solutions are refined. It is chosen where elimination has lost about half of the digits.
+  /// Relative pivot below which solutions are refined, chosen where elimination has lost about half of the digits.
   static constexpr double k_refined_pivot = 1e-4;
   static constexpr double k_usual_rows = 50.0;
-  /// A friction row is dependent if its part orthogonal to the others is below this fraction of its length.
+  /// A friction row is dependent if its part orthogonal to the other rows is below this fraction of its length.
   static constexpr double k_dependent = 1e-6;
 
 private:
@@ -121,11 +122,11 @@ private:
   template <int N> void solve_dense(double* x) const;
 
   static constexpr int k_max_dense = 8;
-  /// Product of one number of wj and one of j of two rows that share a body, a term of one entry of A.
+  /// Product of one number of wj and one of j, of two rows that act on the same body; a term of one entry of A.
   struct DenseProduct {
     std::uint16_t entry, wj, j; ///< indices of doubles from the start of the first row
   };
-  std::vector<DenseProduct> dense_products_, dense_turns_;         ///< products of all three coordinates; of θ only
+  std::vector<DenseProduct> dense_products_, dense_turns_;         ///< products for all three coordinates; for θ only
   std::array<double, k_max_dense * k_max_dense> dense_constant_{}; ///< contributions of constant rows
   std::array<double, k_max_dense * k_max_dense> dense_{};
 
@@ -134,7 +135,7 @@ private:
     int position; ///< its position in elimination order
     unsigned char side_k, side_i;
   };
-  /// A product with a part of the later row.
+  /// A product with a number of a further part of the later row.
   struct PartProduct {
     int part;
     Product product;

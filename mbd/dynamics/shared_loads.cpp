@@ -7,7 +7,7 @@
 
 namespace steplap {
 
-// Determines the null vectors at the present pose, unless those known are still valid.
+// Computes the null vectors at the present pose, unless the known ones are still valid.
 void Dynamics::find_sharing() {
   Layout& layout = *layout_;
   const std::vector<Motion<double>>& all = motion();
@@ -20,7 +20,7 @@ void Dynamics::find_sharing() {
 
 const LoadSharing* Dynamics::sharing_now() const {
   const Layout& layout = *layout_;
-  // While byproducts are pending, compiled code computed the evaluation; it is used only if no rows depend on each other.
+  // Pending by-products belong to an evaluation by code, which is used only if no rows depend on each other.
   return !pending_.is_pending() && layout.is_singular() ? layout.sharing.get() : nullptr;
 }
 
@@ -29,7 +29,7 @@ bool Dynamics::is_shared(int friction) const {
   return shared && shared->group_of(friction) >= 0;
 }
 
-// Restores the friction forces of the solution; the array may contain a reported distribution instead.
+// Restores the friction forces of the solution in the array, which may contain a reported distribution instead.
 void Dynamics::take_solved_friction() {
   for (std::size_t r = 0; r < layout_->active.size(); ++r) {
     const ActiveRow& row = layout_->active[r];
@@ -37,9 +37,9 @@ void Dynamics::take_solved_friction() {
   }
 }
 
-// Sets the event functions of each group in the slots of all its elements. First: 1 minus the least utilisation; the group gives way when
-// it becomes negative, and the mode problem decides which elements slip. Second: 1 minus the incompatible motion of its rows
-// (LoadSharing::discord). Returns true if one of them is near zero. Precondition: wrenches of rigid joints inside clusters are up to date.
+// Sets the event functions of each group, in the slots of all its elements. First: 1 minus the least utilisation; when it becomes negative
+// the group slips, and the mode problem decides which elements do. Second: 1 minus the incompatible motion of its rows
+// (LoadSharing::discord). Returns true if one of them is near zero. Precondition: wrenches of joints inside clusters are computed.
 bool Dynamics::evaluate_group_events() {
   bool is_near = false;
   if (!sharing()) return is_near;

@@ -10,8 +10,8 @@ namespace steplap {
 
 namespace {
 
-// Reduces the scales of the coordinates that move a cluster of a mechanism. `found.speed` divided by the largest velocity of the contact
-// point per unit rate of a coordinate is the scale of that rate.
+// Reduces the scales of those coordinates that move a cluster of a mechanism. The scale of a rate is `found.speed` divided by the largest
+// velocity of the contact point per unit rate. `speed` receives the slowest slip.
 void narrow_scales(const Layout& layout, int cluster, const SlipScale& found, double lever, double* scale, double* speed) {
   const Mechanism& m = layout.mechanism_of_cluster(cluster);
   for (int i = 0; i < m.size(); ++i) {

@@ -18,7 +18,7 @@ StageProgram::StageProgram(const Layout& layout, const State& state, StageCode c
   find_candidate();
 }
 
-// Hash that identifies a layout with its modes, and the scene by its sizes.
+// Returns a hash of the layout with its modes, and of the model's sizes.
 std::uint64_t StageProgram::key() const {
   std::uint64_t hash = 14695981039346656037ULL;
   const auto add = [&hash](std::uint64_t x) { hash = (hash ^ x ^ x >> 29U) * 1099511628211ULL; };
@@ -49,7 +49,7 @@ void StageProgram::adopt_code() {
   if (code_ || !tape_code_ || !tape_code_->code()) return;
   const MachineCode& made = *tape_code_->code();
   const double *const inputs = traced_.inputs.data(), *const constants = traced_.tape.constants.data();
-  // Friction states read by called elements may have changed since recording.
+  // The friction states that called elements read may have changed since the recording, so the tape is evaluated again.
   const bool is_as_ever = traced_.calls.empty() || replay(tape_code_->tape(), inputs, constants, traced_.outputs.data());
   if (is_as_ever && makes_what_was_traced(made)) {
     code_ = &made;
@@ -94,7 +94,7 @@ bool StageProgram::run(double t, const double* y, double* dy, double* event_valu
     note_failure();
     return false;
   }
-  if (has_call_failed()) return false; // the evaluation without code will throw the element's exception
+  if (has_call_failed()) return false; // the evaluation without code will throw the same exception as the element
   failures_ = 0;
   return true;
 }
@@ -118,8 +118,8 @@ bool StageProgram::has_call_failed() const {
   return is_any;
 }
 
-// Returns the smallest relative pivot of the constraint solvers. The comparisons are those of the solvers, in the same order, so that the
-// result has the same bits.
+// Returns the smallest relative pivot of the constraint solvers. Comparisons are made as in the solvers and in the same order, so that the
+// result is bit-identical.
 double StageProgram::smallest_pivot_in(const double* rest) const {
   const double* at = rest + traced_.wrenches.size();
   double smallest = 1.0;
@@ -132,7 +132,7 @@ double StageProgram::smallest_pivot_in(const double* rest) const {
   return smallest;
 }
 
-// Returns true if the results equal those of the recorded stage bit by bit.
+// Returns true if the results of the tape equal those of the recorded stage, `found`, bit by bit.
 bool StageProgram::has_found(const StageFound& found) const {
   const double* out = traced_.outputs.data();
   const auto is_same = [&out](double x) { return std::memcmp(out++, &x, sizeof x) == 0; };
@@ -149,7 +149,7 @@ void StageProgram::record(const System& system, const State& state, const Evalua
                           const StageFound& found) {
   ++tapes_;
   const std::shared_ptr<TapeCode> known = std::exchange(candidate_, nullptr);
-  // The list of steps is kept by the store only, and its memory is reused for the next tape: a run has dozens of sets of modes.
+  // Only the store keeps the list of steps. Its memory is reused for the next tape, since a run has dozens of sets of modes.
   static thread_local std::vector<TapeStep> steps;
   traced_.tape.steps.swap(steps);
   struct GiveBack {
@@ -158,7 +158,7 @@ void StageProgram::record(const System& system, const State& state, const Evalua
   } const give_back{traced_.tape.steps};
   const bool is_traced = trace_rates(system, *layout_, state, live, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_,
                                      known ? &known->tape() : nullptr);
-  // The key was equal by chance, or another branch was taken. The stage will be recorded if the modes persist.
+  // The candidate was wrong: its key was equal by chance, or another branch was taken. The stage will be recorded if the modes persist.
   if (known && !is_traced) return;
   is_hopeless_ = !is_traced || !has_found(found); // compares bit by bit
   if (is_hopeless_) return;

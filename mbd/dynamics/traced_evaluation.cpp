@@ -19,14 +19,14 @@ struct LockTarget {
   TapeNumber value, rate, acceleration;
 };
 
-// Limit of the size: with some 80 instructions per coordinate, longer code would not fit in the instruction cache.
+// Largest number of coordinates. With some 80 instructions per coordinate, longer code would not fit into the instruction cache.
 constexpr int k_most_coordinates = 100;
 
 bool is_plain(const Layout& layout) {
   return layout.coordinate_count <= k_most_coordinates && layout.schur.can_be_traced() && !layout.is_singular() && !layout.sharing;
 }
 
-/// Memory of a trace, kept for the next one: allocation would take a tenth of the time.
+/// Memory of a recording, kept for the next one, because allocation would take a tenth of the time.
 struct TracerMemory {
   std::vector<Motion<TapeNumber>> motion_;
   std::vector<BodyForceOf<TapeNumber>> force_, lack_;
@@ -41,7 +41,7 @@ struct TracerMemory {
   }
 };
 
-// Operations are in the same order as in Dynamics::rates_at and the functions called by it.
+// Records an evaluation. The operations are in the same order as in Dynamics::rates_at and the functions that it calls.
 class Tracer : private TracerMemory {
 public:
   Tracer(const Tracer&) = delete;
@@ -70,7 +70,7 @@ public:
     e_.friction = state.friction.data();
   }
 
-  // Throws NotTraceable if the scene cannot be recorded.
+  // Records the evaluation. Throws NotTraceable if that is not possible.
   void trace(double t, const double* y, std::span<const double> time_inputs, double least_pivot, TracedRates& traced) {
     e_.t = t;
     traced.calls.clear();
@@ -92,7 +92,7 @@ public:
 private:
   ElementCall& call_element() { return *calls_->emplace_back(std::make_unique<ElementCall>(system_, live_)); }
 
-  // Records a friction element, as FrictionElement::record_friction.
+  // Records a friction element, with the arguments of FrictionElement::record_friction().
   void record_friction(int f, const TapeNumber* rate, TapeNumber* wrench) {
     const FrictionUnit& unit = system_.frictions[f];
     TapeNumber* const event_value = &watch_[unit.first_event];
@@ -132,7 +132,7 @@ private:
     place_all(layout_, q_.data(), v_.data(), target_of_lock(), motion_.data());
   }
 
-  // The parts of long rows follow all rows.
+  // Records gradients and γ of all rows. The parts of rows over more than two bodies follow all rows.
   void load_rows() {
     for (const SchurRow& known : layout_.schur_rows) {
       SchurRowOf<TapeNumber>& row = rows_.emplace_back();
@@ -191,7 +191,7 @@ private:
     add_part_responses(layout_, rows_.data(), multiplier_.data(), a_.data());
   }
 
-  // Accelerations of a mechanism without its rows, and γ − J a of the rows.
+  // Records the accelerations of a mechanism without its rows, and γ − J a of its rows.
   void accelerate(TracedMechanism& m) {
     const Mechanism& of = m.constants();
     TapeNumber* const s = &a_[static_cast<std::size_t>(of.first_coordinate)];
@@ -215,7 +215,7 @@ private:
     }
   }
 
-  // Reserves the capacity that most layouts need; otherwise each vector would be reallocated five times.
+  // Clears the result and reserves the capacity that most layouts need; otherwise each vector would be reallocated five times.
   void clear(TracedRates& traced) {
     traced.outputs.clear();
     traced.tape.places.clear();
@@ -236,7 +236,7 @@ private:
     put_next(e_.dissipation, 0, traced);
     put_next(e_.work, 0, traced);
     for (std::size_t i = 0; i < watch_.size(); ++i) {
-      if (watch_[i].is_constant()) continue; // constants remain as the evaluation before has left them
+      if (watch_[i].is_constant()) continue; // constants keep the values that the evaluation before has written
       traced.event_values.push_back(static_cast<int>(i));
       put_out(watch_[i], {TracedRates::k_event_count, static_cast<std::int32_t>(i)}, traced);
     }
@@ -252,7 +252,8 @@ private:
     for (const SignalInput& signal : e_.time_inputs) traced.inputs.push_back(signal.at(e_.t));
   }
 
-  // Outputs the wrenches in joints inside clusters if event functions depend on them; the same as Reactions::find_joints.
+  // Makes the wrenches in joints inside clusters outputs if event functions depend on them; the operations are those of
+  // Reactions::find_joints().
   void put_out_wrenches(TracedRates& traced) {
     traced.wrenches.clear();
     traced.has_wrenches = !layout_.is_carried_by_pins; // pin forces are not recorded
@@ -293,7 +294,7 @@ private:
     traced.tape.places.push_back(place);
   }
 
-  // Appends an output after the previous ones of its array.
+  // Appends an output to those of an array.
   void put_next(const TapeNumber& x, std::int32_t array, TracedRates& traced) { put_out(x, {array, put_[array == 0 ? 0 : 1]++}, traced); }
 
   const System& system_;

@@ -17,7 +17,7 @@ MechanismWorkOf<TapeNumber>::Link link_of(const MechanismWork::Link& known) {
   link.pin = known.pin;
   link.centre = known.centre;
   link.moment = known.moment;
-  if (known.parent < 0 && !known.is_free) link.o = known.o; // its pin on the ground
+  if (known.parent < 0 && !known.is_free) link.o = known.o; // position of its pin on the ground
   return link;
 }
 
