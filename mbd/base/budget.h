@@ -13,8 +13,8 @@ struct Budget {
   std::optional<double> memory; ///< resident memory of the whole process, bytes
 };
 
-/// Returns a question whose answer is not empty once the budget is used up; an answer of `otherwise` comes first. The time is counted from
-/// this call. Memory is read from /proc/self/statm, at most every 10 ms; without that file it is not limited.
+/// Returns a function that gives the reason to stop: that of `otherwise`, or that the budget is used up; "" to continue. The time is
+/// counted from this call. Memory is read from /proc/self/statm, at most every 10 ms; without that file it is not limited.
 [[nodiscard]] StopQuestion within(const Budget& budget, StopQuestion otherwise);
 
 } // namespace steplap

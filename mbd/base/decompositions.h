@@ -48,7 +48,7 @@ public:
     MatX vectors;
     std::vector<int> pivots;
   };
-  /// Returns the null space; `least` as above.
+  /// Returns the null space; entries below `least` are set to zero.
   [[nodiscard]] NullSpace null_space(double least) const;
   /// Returns a solution x of a x ≈ right (least squares) that uses only the rank() pivot columns; other entries of x are zero.
   [[nodiscard]] MatX solve_by_rank(const MatX& right) const;

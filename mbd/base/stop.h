@@ -11,11 +11,11 @@ namespace steplap {
 /// Thrown if the user stops a computation.
 class RunStopped : public NumericalFailure {
 public:
-  /// Takes the message.
+  /// Constructs the error with its message.
   using NumericalFailure::NumericalFailure;
 };
 
-/// Returns the reason to stop, or "" to continue.
+/// Function that returns the reason why the computation must stop; "" if it continues.
 using StopQuestion = std::function<std::string()>;
 
 /// While an object of this class exists, stop_if_asked() in the same thread calls `question`, which must outlive the object. If `question`

@@ -30,7 +30,7 @@ public:
   /// Sets layout and state, which must exist until the next call of use().
   void use(Layout& layout, const State& state);
 
-  // --- evaluation: at the motion placed, for the time of the evaluation ------------------------------
+  // --- evaluation, at the present motion of `kinematics` ---------------------------------------------
   /// Computes gradients, bias terms and the factorisation of A at the present motion. None of these depends on the applied forces.
   void prepare();
   /// Solves for λ at time t and adds W Jᵀλ to `a`, which contains the accelerations by forces alone. The accelerations of mechanisms are
@@ -70,8 +70,8 @@ private:
   void solve_multipliers(Mechanism& m, double* a);
   void drive(double t);
   void compare_row(std::size_t r, double t);
-  // Contributions of the further parts of rows over more than two bodies (row_parts.cpp): to γ and gradients, to residuals, to −J a in
-  // `right`, to accelerations, and to J · change.
+  // Add the contributions of the further parts of rows over more than two bodies (row_parts.cpp): to γ and gradients, to residuals, to −J a
+  // in `right`, to accelerations, and to J · change.
   void pull_parts();
   void compare_parts();
   void take_part_accelerations(const double* a, double* right) const;

@@ -56,8 +56,8 @@ void find_lacks(const System& system, const Layout& layout, const Motion<S>* mot
     for (const RowSpec* part = layout.active[r].spec; part; part = part->next) take_carried(layout, *part, lambda[r], motion, lack);
 }
 
-/// Adds these wrenches up from children to parents. Calls bears(edge, along) for each joint, with its wrench on the rows' body a about the
-/// joint's point, along the joint's rows (two axes fixed in b, then the angle).
+/// Adds the wrenches on members up from children to parents. Calls bears(edge, along) for each joint, with its wrench on the rows' body a
+/// about the joint's point, along the joint's rows (two axes fixed in b, then the angle).
 template <class S, class F>
 STEPLAP_INLINE void hand_on_lack(const Layout& layout, const std::vector<EdgeGeometry>& edges, BodyForceOf<S>* lack, const F& bears) {
   for (std::size_t e = 0; e < layout.edges.size(); ++e) {

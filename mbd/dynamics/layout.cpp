@@ -414,7 +414,7 @@ void find_lock_terms(Layout& layout) {
   }
 }
 
-// Sets the numbers of rows that are the same in every pose.
+// Sets the numbers of the rows that do not depend on the pose.
 void fill_rows(Layout& layout) {
   // A row between two bodies of one cluster has no effect. With zero inverse masses it is recognised as dependent.
   for (SchurRow& row : layout.schur_rows)

@@ -25,7 +25,7 @@ class StageProgram;
 /// Type of coordinates for islands that allow both; `automatic`: joint coordinates where they are cheaper.
 enum class Coordinates : unsigned char { automatic, joint, absolute };
 
-/// Several bodies that move as one. Its coordinates are those of the common centre of gravity.
+/// Bodies that move as one. The coordinates of the cluster are those of the common centre of gravity.
 struct Cluster {
   double mass = 0.0, inertia = 0.0;
   double w[3] = {0, 0, 0}; ///< 1/m, 1/m, 1/J; 0 where locked
@@ -82,7 +82,7 @@ struct HeldRow {
   int friction_row = 0; ///< index in Snapshot::friction_force
 };
 
-/// A rigid joint in the spanning tree of a cluster. In lists of these, leaves come first.
+/// A rigid joint in the spanning tree of a cluster. Lists of edges begin with the leaves.
 struct RigidEdge {
   int parent = 0, child = 0;
   int block = -1;    ///< row block, or −1
@@ -162,7 +162,7 @@ struct Layout {
   [[nodiscard]] bool has_long_rows() const { return !parts.empty(); }
   /// Returns true if some clusters are in joint coordinates.
   [[nodiscard]] bool has_mechanisms() const { return !mechanisms.empty(); }
-  /// Returns the mechanism that contains this cluster (or row, below), which must not be in absolute coordinates.
+  /// Return the mechanism that contains the cluster or the row. Precondition: it is not in absolute coordinates.
   [[nodiscard]] const Mechanism& mechanism_of_cluster(int cluster) const {
     return *std::prev(
         std::upper_bound(mechanisms.begin(), mechanisms.end(), cluster, [](int k, const Mechanism& m) { return k < m.first_cluster; }));
@@ -201,7 +201,7 @@ struct Layout {
 /// Writes the key of the layout for `state` to `key`.
 void layout_key(const State& state, Coordinates coordinates, LayoutKey& key);
 
-/// The bodies that are merged to clusters, and their poses in these.
+/// The bodies that are merged to clusters, with their poses in the clusters.
 struct MergedBodies {
   std::vector<int> frictions; ///< sticking joints that merge bodies, in addition to welds
   std::vector<Cluster> clusters;

@@ -286,7 +286,7 @@ private:
 
 namespace {
 
-// Returns an upper bound of the motion c along a row with gradient j for any direction of the row. The direction of a row is known to
+// Returns an upper bound of |J c| for a gradient J with the length and lever of j in any direction. The direction of a row is known to
 // k_discord rad only, so k_discord times this bound is rounding.
 double across(const double* j, const double* c) {
   return (std::abs(j[0]) + std::abs(j[1])) * (std::abs(c[0]) + std::abs(c[1])) + std::abs(j[2] * c[2]);

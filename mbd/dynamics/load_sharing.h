@@ -50,9 +50,9 @@ public:
   /// Returns true if the null vectors are still null vectors at these poses, and the same rows are left out.
   [[nodiscard]] bool holds_at(const std::vector<Motion<double>>& motion, const std::vector<char>& left_out) const;
 
-  /// Returns a measure of how far the elements of a group cannot stick together. Dependent rows can only if Σ n_r (J_r v − target) = 0 for
-  /// each null vector n, and the same for accelerations. The feet of a rocking box violate this, and so do a drive and friction on the same
-  /// coordinate. Above 1 the violation exceeds rounding errors.
+  /// Returns the incompatibility of the motions along the rows of a group, relative to rounding errors; above 1 the elements cannot all
+  /// stick. Dependent rows are compatible if Σ n_r (J_r v − target) = 0 for each null vector n, and the same for accelerations. Not
+  /// compatible are the feet of a rocking box, and a drive and friction on the same coordinate.
   [[nodiscard]] double discord(int group, const Evaluation& evaluation, const double* acceleration) const;
   /// Computes the least utilisation of every group. `friction_force` contains one solution of the equations.
   void solve(const Evaluation& evaluation, const double* friction_force);

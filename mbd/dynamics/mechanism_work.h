@@ -302,7 +302,7 @@ template <class S> struct MechanismWorkOf {
   std::array<S, k_most * k_most> mass{};  ///< M, then L below the diagonal
   std::array<S, k_most> inverse_d{};      ///< 1/D of M
 
-  // Rows have k_most numbers each.
+  // The coordinates that move one row.
   struct RowPattern {
     std::uint8_t count = 0;
     std::array<std::uint8_t, k_most> at{}; ///< coordinates of its gradient and those nearer to the root, the last first

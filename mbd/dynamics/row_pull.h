@@ -160,17 +160,17 @@ STEPLAP_INLINE MeasureValue<S> load_part(const Layout& layout, std::size_t i, co
   return m;
 }
 
-/// Computes all such parts and adds their contributions to γ in `right`.
+/// Computes all parts of rows over more than two bodies, and adds their contributions to γ in `right`.
 template <class S> void pull_parts(const Layout& layout, const Motion<S>* motion, SchurRowOf<S>* rows, S* right) {
   for (std::size_t i = 0; i < layout.parts.size(); ++i) right[layout.parts[i].of] -= load_part<true>(layout, i, motion, rows).bias;
 }
 
-/// Subtracts the parts' contributions to J a from `right`, for the accelerations `a` of the clusters.
+/// Subtracts the contributions of the further parts of rows to J a from `right`, for the accelerations `a` of the clusters.
 template <class S> void take_part_accelerations(const Layout& layout, const SchurRowOf<S>* rows, const S* a, S* right) {
   for (const SchurPart& part : layout.parts) right[part.of] = less_accelerations(rows[part.row], right[part.of], a);
 }
 
-/// Adds the parts' contributions to W Jᵀ λ to the accelerations `a`.
+/// Adds the contributions of the further parts of rows to W Jᵀ λ to the accelerations `a`.
 template <class S> void add_part_responses(const Layout& layout, const SchurRowOf<S>* rows, const S* lambda, S* a) {
   for (const SchurPart& part : layout.parts) {
     const SchurRowOf<S>& row = rows[part.row];

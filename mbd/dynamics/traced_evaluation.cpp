@@ -294,7 +294,7 @@ private:
     traced.tape.places.push_back(place);
   }
 
-  // Appends an output to those of an array.
+  // Records x as the next output in the array with this number.
   void put_next(const TapeNumber& x, std::int32_t array, TracedRates& traced) { put_out(x, {array, put_[array == 0 ? 0 : 1]++}, traced); }
 
   const System& system_;

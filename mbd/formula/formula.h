@@ -3,7 +3,7 @@
 //   ? :   ||   &&   < <= > >= == !=   + -   * /   - !   ^   ( )     from lowest to highest precedence
 //   abs sqrt hypot min max sin cos tan asin acos atan atan2 exp ln log10   pi   t (time)
 //   name            a channel, if it consists of letters, digits, _ and points; any other name in braces, {active part.x},
-//                   also as trajectory.csv heads it, {active part.x [m]}
+//                   also with its unit, as in the header of trajectory.csv: {active part.x [m]}
 //   '12 kN'         a number with its unit; a number without one has none
 // Units are derived: operands of sums, comparisons and choices must have the same dimension; trigonometric functions and logarithms take
 // dimensionless numbers. Results are bit-identical on every machine (portable_math.h), and NaN if there is no finite value (division by

@@ -26,7 +26,7 @@ void Formula::fail(const FormulaNode& at, const std::string& message) const {
   throw ModelError(where_, subject_ + ": in '" + text_.substr(at.begin, at.end - at.begin) + "' " + message);
 }
 
-// Returns the common dimension of both operands.
+// Returns the common dimension of both operands. Throws ModelError if they differ.
 Formula::Typed Formula::same(const FormulaNode& node, const Typed& a, const Typed& b) const {
   Typed both;
   both.powers = a.is_any ? b.powers : a.powers;

@@ -30,8 +30,8 @@ inline constexpr Interval k_all{-std::numeric_limits<double>::infinity(), std::n
 [[nodiscard]] inline Interval hull(const Interval& a, const Interval& b) { return {std::min(a.low, b.low), std::max(a.high, b.high)}; }
 [[nodiscard]] inline Interval common(const Interval& a, const Interval& b) { return {std::max(a.low, b.low), std::min(a.high, b.high)}; }
 
-// Precondition of the following functions: no argument is empty. `is_partial` is set to true if the result is partial, and otherwise left
-// unchanged.
+// Precondition of the following functions: no argument is empty. `is_partial` is set to true if some arguments have no value, and otherwise
+// left unchanged.
 [[nodiscard]] Interval add(const Interval& a, const Interval& b);
 [[nodiscard]] Interval subtract(const Interval& a, const Interval& b);
 [[nodiscard]] Interval multiply(const Interval& a, const Interval& b);

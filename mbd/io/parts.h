@@ -27,7 +27,7 @@ struct PartEntry {
   double x = 0.0, y = 0.0, angle = 0.0; ///< position and angle of its frame, m, rad
   long repeat = 1;                      ///< number of copies
 
-  /// Returns its fields in a model file, except the table `parameters`.
+  /// Returns the fields of a part in a model file, except the table `parameters`.
   [[nodiscard]] static const FieldTable& fields();
 };
 

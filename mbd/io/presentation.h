@@ -18,9 +18,9 @@ struct AcceptanceTable : Criterion {
 /// Returns all [[acceptance]] tables of the model, in order.
 [[nodiscard]] std::vector<const AcceptanceTable*> acceptance_tables_of(const Model& model);
 
-/// Checks all of these tables, and converts the limits of criteria to the units of their channels. Throws ModelError for limits of another
-/// dimension, patterns that match nothing, actions that wait for an event which their element cannot have, and plots or criteria that
-/// combine different units. Removes plots of channels that are not written from the model, and returns the names of these plots.
+/// Checks all plots, actions and criteria, and converts the limits of criteria to the units of their channels. Throws ModelError for limits
+/// of another dimension, patterns that match nothing, actions that wait for an event which their element cannot have, and plots or criteria
+/// that combine different units. Removes plots of channels that are not written from the model, and returns the names of the removed plots.
 std::vector<std::string> check_presentation(Model& model, const System& system);
 /// Checks criteria only, and converts their limits to the units of their channels. Other channels may be missing in the system.
 void convert_limits(Model& model, const System& system);

@@ -90,9 +90,9 @@ public:
   FieldBuilder& at_least(double lowest) { return assign(field_->minimum, lowest); }
   /// Requires values ≤ `largest`.
   FieldBuilder& at_most(double largest) { return assign(field_->maximum, largest); }
-  /// Makes the field a choice of these texts.
+  /// Excludes the minimum itself.
   FieldBuilder& excluding_minimum() { return assign(field_->is_minimum_excluded, true); }
-  /// Makes it a choice of these texts.
+  /// Makes the field a choice of these texts.
   FieldBuilder& one_of(std::vector<std::string> choices) {
     field_->type = FieldType::choice;
     return assign(field_->choices, std::move(choices));

@@ -112,7 +112,7 @@ struct ElementKind {
   /// Returns the channels whose extremes `judge` uses; their errors decide whether its result can be trusted.
   std::vector<std::string> (*channels_of_trust)(const Element& element) = nullptr;
 
-  /// Declares T as the struct of its elements.
+  /// Declares T as the struct of the elements of this kind.
   template <class T> void holds() {
     create = make_held<Element, T>;
     copy = copy_held<Element, T>;
@@ -245,7 +245,7 @@ struct TableKind {
   /// after completion without effect on the entries that apply() added.
   bool reads_masses = true, reads_elements = true;
 
-  /// Declares T as the struct of its tables.
+  /// Declares T as the struct of the tables of this kind.
   template <class T> void holds() {
     create = make_held<Element, T>;
     copy = copy_held<Element, T>;

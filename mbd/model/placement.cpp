@@ -231,7 +231,7 @@ void Placement::report_leftovers() {
   }
 }
 
-// Marks all bodies connected to `body` by such joints, so that the group is reported once.
+// Marks all bodies connected to `body` by joints that prescribe poses, so that the group is reported once.
 void Placement::mark_adrift(std::size_t body) {
   is_adrift_[body] = 1;
   waiting_.push_back(body);

@@ -50,7 +50,7 @@ template <bool has_integrals> void add_harmonic(const Signal::Harmonic& h, doubl
 
 constexpr std::size_t k_block = 8; // harmonics per vectorised call
 
-// Adds k_block harmonics, with the same bits as by add_harmonic().
+// Adds k_block harmonics. The result is bit-identical to that of add_harmonic().
 template <bool has_integrals> void add_block(const Signal::Harmonic* h, double tau, PieceJet& jet) {
   double x[k_block], half[k_block], s[k_block], c[k_block], lag[k_block] = {}, unused[k_block];
   for (std::size_t i = 0; i < k_block; ++i) {

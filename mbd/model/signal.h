@@ -130,7 +130,7 @@ struct SignalKind {
   /// Makes a signal from others, in place of `build`. `parts` are the referenced signals, in the order of the fields.
   Signal (*combine)(const SignalDefinition& definition, const std::vector<const Signal*>& parts) = nullptr;
 
-  /// Declares T as the struct of its definitions.
+  /// Declares T as the struct of the definitions of this kind.
   template <class T> void holds() {
     create = make_held<SignalDefinition, T>;
     copy = copy_held<SignalDefinition, T>;

@@ -15,8 +15,8 @@ namespace {
 constexpr double k_rank = 1e-9, k_friction_rank = 1e-6;
 constexpr double k_least_radius = 1e-3; // share of the size of the model
 
-// Returns the indices of independent rows: of the first `joints` columns, which are joints, then of friction. `rows` has a unit column for
-// each row.
+// Returns the indices of independent columns of `rows`: first those of joints (the first `joints` columns), then those of friction. Columns
+// have unit length.
 std::vector<int> independent(const MatX& rows, Eigen::Index joints) {
   std::vector<int> kept;
   const Eigen::Index n = rows.rows(), frictions = rows.cols() - joints;

@@ -28,7 +28,7 @@ public:
   /// Returns the same system as instantiate(given, …), byte for byte except for omitted channels. `values` has one number per path, in SI.
   /// Throws ModelError for a value that is out of range or gives an invalid model.
   [[nodiscard]] std::unique_ptr<System> make(const std::vector<double>& values);
-  /// Returns the completed model of the last system, which start values, settings and verdicts are taken from.
+  /// Returns the completed model of the last system, for its start values, settings and verdicts.
   [[nodiscard]] const Model& model() const { return completed_; }
 
 private:
@@ -44,7 +44,7 @@ private:
   std::vector<std::string> paths_;
   std::optional<std::vector<std::string>> channels_;
   RecompilationScope redone_ = RecompilationScope::nothing;
-  // For RecompilationScope::tables:
+  // Used for RecompilationScope::tables only:
   std::vector<std::size_t> applied_;                              ///< tables to be applied again: all except plots, criteria and channels
   std::vector<Body> bodies_;                                      ///< bodies before tables were applied
   std::vector<std::size_t> at_centres_;                           ///< indices of the markers at the centres of gravity of their bodies

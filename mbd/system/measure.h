@@ -98,7 +98,7 @@ struct DistanceMeasure {
   }
 };
 
-/// Value θ_A − θ_B.
+/// Value θ_A − θ_B, rad.
 struct AngleMeasure {
   template <bool WithBias, class S, class B> STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
     MeasureValue<S> m;

@@ -12,8 +12,8 @@
 
 namespace steplap {
 
-/// Type of Channel::value for such a channel. `shown` returns the value of the channel: the value of `measure` minus `zero`, or the rate of
-/// `measure`.
+/// Type of Channel::value for a channel that is a measure or the rate of one. `shown` returns the value of the channel: the value of
+/// `measure` minus `zero`, or the rate of `measure`.
 struct MeasuredValue {
   std::function<double(const Snapshot&)> shown;
   RowSpec measure;   ///< single measure of two bodies

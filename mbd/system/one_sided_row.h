@@ -128,7 +128,7 @@ struct OneSidedUnit {
   const OneSidedRow* row = nullptr;
   std::size_t friction = 0;
 };
-/// Returns a range over all ropes, in the order of the friction elements. `system` must outlive it.
+/// Returns a range over all ropes, in the order of the friction elements. `system` must outlive the range.
 [[nodiscard]] inline auto one_sided_rows(const System& system) {
   const auto of = [&system](std::size_t f) { return OneSidedUnit{system.frictions[f].rope, f}; };
   return std::views::iota(std::size_t{0}, system.frictions.size()) | std::views::transform(of) |

@@ -36,7 +36,7 @@ struct StatePlace {
 };
 /// Returns index and unit of a state. The first call assigns indices to all states of the model.
 [[nodiscard]] StatePlace place_of_state(SystemBuilder& builder, const OwnState& state);
-/// Returns initial values of State::inner, up to the last of these states.
+/// Returns the initial values of State::inner, up to the last [[state]] variable.
 [[nodiscard]] std::vector<double> start_of_states(SystemBuilder& builder);
 
 /// All [[state]] variables of a model, as a force group that applies no forces.

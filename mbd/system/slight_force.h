@@ -8,8 +8,8 @@
 
 namespace steplap {
 
-/// Returns 1e-6 of the force (N, for an angle N m) that gives the lighter of the row's bodies the characteristic acceleration of the scene.
-/// Precondition: at least one body of `row` moves.
+/// Returns 1e-6 of the force (N, for an angle N m) that gives the lighter of the row's bodies the characteristic acceleration of the
+/// system. Precondition: at least one body of `row` moves.
 [[nodiscard]] inline double slight_force(const System& system, const RowSpec& row) {
   constexpr double k_slight = 1e-6;
   double lightest = std::numeric_limits<double>::infinity();

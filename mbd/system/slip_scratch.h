@@ -1,4 +1,4 @@
-// Tells slip laws the tolerance of the run.
+// Passes the tolerance of the run to slip laws.
 //
 // The onset and end of slip in a step-lap joint are resolved only as accurately as the tolerance requires. A run with a finer tolerance
 // neglects less, so that error estimates by finer runs include what is neglected.

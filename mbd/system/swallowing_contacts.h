@@ -8,8 +8,8 @@
 
 namespace steplap {
 
-/// Additional interface of a group of such contacts. A run must stop when one body is inside the other, because the contact law is not
-/// valid there.
+/// Additional interface of a group of contacts in which one body can get inside the other. The run must then stop, because the contact law
+/// is not valid there.
 class SwallowingContacts {
 public:
   virtual ~SwallowingContacts() = default;

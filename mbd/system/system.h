@@ -149,9 +149,9 @@ struct FrictionUnit {
   const OneSidedRow* rope = nullptr;         ///< the element, if it is an inextensible rope
   const OneWayLock* clutch = nullptr;        ///< the element, if it is a one-way clutch
 
-  /// Returns the index of one of its event functions.
+  /// Returns the index of an event function of the element.
   [[nodiscard]] int slot(FrictionWatch watch) const { return first_event + static_cast<int>(watch); }
-  /// Returns which of its event functions has this index.
+  /// Returns the event function of the element that has this index.
   [[nodiscard]] FrictionWatch watch_of(int slot) const { return static_cast<FrictionWatch>(slot - first_event); }
 };
 

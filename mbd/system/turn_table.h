@@ -64,7 +64,7 @@ public:
   void add(int a, int b, TurnKnots knots);
   /// Adds the angles on which a measure of a and b depends: the angle of each body in `turning`, and the relative angle if both are in it.
   void add(int a, int b, Turning turning);
-  /// Adds the angles of all these bodies relative to each other and to the ground.
+  /// Adds the angles of all listed bodies relative to each other and to the ground.
   void add_all(std::span<const int> bodies);
   void add_all(std::initializer_list<int> bodies) { add_all(std::span(bodies.begin(), bodies.size())); }
 

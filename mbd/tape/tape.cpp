@@ -127,7 +127,7 @@ private:
     return make(negate, x.step);
   }
 
-  // Returns true if the step of x is that literal; the sign of x is ignored.
+  // Returns true if the step of x is the given literal; the sign of x is ignored.
   bool is(Signed x, std::int32_t literal) const { return made_[static_cast<std::size_t>(x.step)] == TapeStep{constant, literal, 0}; }
 
   Signed given(const TapeStep& s) {
@@ -205,7 +205,7 @@ private:
   std::vector<Signed> value_; ///< for each step of the original tape
 };
 
-// Returns the value of a step other than a call, its arguments and its results.
+// Returns the value of a step that is not a call, an argument or a result of one.
 double value_of(const TapeStep& s, const double* inputs, const double* constants, const std::vector<double>& values) {
   if (s.operation == input) return inputs[s.a];
   if (s.operation == constant) return is_literal(s.a) ? k_literals[literal_index(s.a)] : constants[s.a];

@@ -99,7 +99,7 @@ bool may_turn(const FrictionUnit& unit) {
   return unit.friction->dimension() == 3 && unit.friction->is_rigid() && !unit.friction->never_slips();
 }
 
-// Returns the change of all such friction forces, N, if the slip velocities change by `rate`, m/s.
+// Returns the sum of the changes of all friction forces with may_turn(), N, if the slip velocities change by `rate`, m/s.
 double turned_force(const Snapshot& s, const System& system, double rate) {
   double sum = 0.0;
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
@@ -175,7 +175,7 @@ double borne_together(const Snapshot& s, const System& system, const std::vector
   return sum;
 }
 
-// Adds a `shares` channel for each element of such a group, and a channel with the sum of their forces.
+// Adds a `shares` channel for each friction element on one line with others, and a channel with the sum of their forces.
 void add_shared_channels(System& system) {
   const System* const self = &system;
   for (const std::vector<std::size_t>& group : frictions_on_one_line(system)) {

@@ -161,7 +161,8 @@ private:
   [[nodiscard]] const std::string& name_of_run(std::size_t i) { return run_of(i).setting.integrator; }
   [[nodiscard]] bool is_stepping(std::size_t i) { return method(run_of(i).setting.integrator).is_time_stepping; }
 
-  // Records a disagreement. For each pair of methods, for each kind of fault of a single method, and for each method the worst one is kept.
+  // Records a disagreement. Of several with the same two runs and the same kind of doubt only the worst is kept, and each run keeps its
+  // worst one.
   void note(const Disagreement& d) {
     for (CrossRun& r : check_.runs)
       if ((r.setting.integrator == d.first || r.setting.integrator == d.second) && !(d.ratio <= r.worst.ratio)) r.worst = d;

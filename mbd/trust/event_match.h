@@ -30,7 +30,7 @@ class BetweenEvents {
 public:
   BetweenEvents(const EventMatch& match, const std::vector<Event>& mine, const std::vector<Event>& reference);
 
-  /// Returns true if t lies in such an interval, or at an event up to rounding.
+  /// Returns true if t lies between two paired events, or at an event up to rounding.
   [[nodiscard]] bool holds(double t) const;
 
 private:

@@ -82,7 +82,7 @@ struct JointAssessment {
   [[nodiscard]] bool has_weak_part() const { return corner_margin.value < 1.0 || part_margin.value < 1.0; }
   [[nodiscard]] bool has_slid_too_far() const { return slid_share.value > most_slide; }
   [[nodiscard]] bool has_crushed_edges() const { return edge_share.value > 1.0; }
-  /// Returns the allowed line load over the largest one; infinite if no edge was loaded, NaN if none is given.
+  /// Returns the allowed line load over the largest one; infinite if no edge was loaded, NaN if no allowed line load is given.
   [[nodiscard]] double edge_margin() const { return 1.0 / edge_share.value; }
   /// Returns true if the clearance has closed. The sheets then touch end to end, which the model contains only if it has edges.
   [[nodiscard]] bool has_left_range() const;
