@@ -90,7 +90,7 @@ Decimal decimal_of(double value) {
   if (down - reach + k_sure < 2 * k_sure || up - reach + k_sure < 2 * k_sure || part - k_half + k_sure_of_half < 2 * k_sure_of_half)
       [[unlikely]]
     return decimal_by_dragonbox(value);
-  const unsigned last = is_down || is_up ? 0U : static_cast<unsigned>(ones + (part >> 63)); // 9.5 rounds up to 10, which lies within reach
+  const unsigned last = is_down || is_up ? 0U : static_cast<unsigned>(ones + (part >> 63)); // at most 9: from 9.5 on, ten is within reach
   tens += is_up ? 1 : 0;
   if (tens >= k_sixteen_digits) return {tens, last, k + 16};
   return {10 * tens + last, 0, k + 15};

@@ -136,7 +136,7 @@ struct Layout {
   std::vector<int> redundant_blocks; ///< rigid row blocks inside one cluster that close a loop
   std::vector<ActiveLink> links;
   std::vector<int> sliding;                            ///< friction elements in phase slip
-  std::vector<int> sliding_link;                       ///< slot of the link of each of these
+  std::vector<int> sliding_link;                       ///< slot of the link of each element in `sliding`
   std::vector<int> holding;                            ///< friction elements in phase stick whose rows are constraints
   std::vector<int> merged;                             ///< friction elements in phase stick that merge their bodies
   bool can_merged_slip = false;                        ///< some of the elements in `merged` can slip

@@ -298,14 +298,14 @@ template <class S> struct MechanismWorkOf {
   mutable std::vector<Link> packed; ///< scratch of pack() and unpack(), which do not change the placed pose
   std::array<S, k_most> placed_q{}, placed_v{};
   std::array<std::int8_t, k_most> up{};   ///< the coordinate next nearer to the root; −1: none
-  std::array<std::uint8_t, k_most> all{}; ///< all coordinates, the last first
+  std::array<std::uint8_t, k_most> all{}; ///< all coordinates, in descending order
   std::array<S, k_most * k_most> mass{};  ///< M, then L below the diagonal
   std::array<S, k_most> inverse_d{};      ///< 1/D of M
 
   // The coordinates that move one row.
   struct RowPattern {
     std::uint8_t count = 0;
-    std::array<std::uint8_t, k_most> at{}; ///< coordinates of its gradient and those nearer to the root, the last first
+    std::array<std::uint8_t, k_most> at{}; ///< coordinates of its gradient and those nearer to the root, in descending order
   };
   std::vector<RowPattern> patterns;
   struct Shared {

@@ -1,6 +1,6 @@
 // Calls OpenSSL's SHA-256 functions directly. The newer EVP functions first read the configuration of the machine and build tables of all
 // algorithms, which takes as long as the digest of 170 kB.
-#define OPENSSL_API_COMPAT 10101 // where these functions are declared without a warning
+#define OPENSSL_API_COMPAT 10101 // in this version these functions are not deprecated
 #include "mbd/io/digest.h"
 
 #include <openssl/evp.h>

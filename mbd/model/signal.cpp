@@ -378,8 +378,8 @@ double Signal::mean(double from, double to) const {
 }
 
 double Signal::fastest_at(double t) const {
-  constexpr int k_tame_power = 3;   // cubics need no step limit: every method follows them
-  constexpr double k_slight = 1e-2; // relative to the piece: smaller bulges change no extreme significantly, and step errors detect them
+  constexpr int k_tame_power = 3;   // cubics need no step limit: every method integrates them accurately
+  constexpr double k_slight = 1e-2; // relative to the piece: smaller terms change no extreme significantly, and error control resolves them
   double fastest = 0.0;
   const Piece* piece = piece_at(t);
   if (!piece) return fastest;

@@ -234,7 +234,7 @@ private:
     }
     if (place->line == 0 && has_control_character(name)) // names from files are checked for control characters when the file is read
       add(*place, subject_text(noun, "") + " '" + name + "': the name must not hold control characters");
-    if (std::string_view("=+-@").find(name.front()) != std::string_view::npos) // names stand in cells of CSV files
+    if (std::string_view("=+-@").find(name.front()) != std::string_view::npos) // names are written to cells of CSV files
       add(*place, subject_text(noun, "") + " '" + name + "': the name must not begin with '" + name.front() +
                       "', which a spreadsheet takes for a formula");
     const auto [first, is_new] = seen.emplace(name, *place);

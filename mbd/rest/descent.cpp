@@ -19,9 +19,9 @@ constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 constexpr double k_first_radius = 0.1, k_first_turn = 0.3; // initial trust region: fraction of the model's size; rad
 // Radii of the trust region for rotations, rad. Larger rotations could confuse poses that differ by half a turn.
 constexpr double k_small_turn = 0.4, k_largest_turn = 1.5;
-constexpr double k_balanced = 1e-11; // share of the size of the model; smaller Newton steps are rounding of the pose
+constexpr double k_balanced = 1e-11; // fraction of the size of the model; smaller Newton steps are rounding of the pose
 constexpr double k_nearly_balanced = 1e-8;
-constexpr double k_nudge = 1e-3; // displacement out of an unstable equilibrium: share of the size of the model, rad
+constexpr double k_nudge = 1e-3; // displacement out of an unstable equilibrium: fraction of the size of the model, rad
 // A step is too long if the forces at its end oppose it by more than this fraction of their drive at its start.
 constexpr double k_turned_against = 0.5;
 constexpr double k_far = 1e4; // in sizes of the model; beyond it a body counts as moving without end

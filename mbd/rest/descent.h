@@ -43,7 +43,7 @@ public:
   [[nodiscard]] const Statics& statics() const { return statics_; }
   /// Returns the directions without stiffness at the equilibrium, each described by its largest component.
   [[nodiscard]] const std::vector<MotionPart>& indifferent() const { return indifferent_; }
-  [[nodiscard]] int more_indifferent() const { return more_indifferent_; } ///< number of further such directions
+  [[nodiscard]] int more_indifferent() const { return more_indifferent_; } ///< number of further directions without stiffness
   /// Returns the unstable equilibria that were found and left on the way, each by the direction in which it was left.
   [[nodiscard]] const std::vector<MotionPart>& left() const { return left_; }
   /// Return the number of directions along which small displacements meet no resistance, at the start and at the end.

@@ -35,7 +35,7 @@ struct Equilibrium {
   bool hangs_on_way = false;           ///< held by friction after sliding or settling, so one equilibrium of many
   std::vector<FrictionMargin> margins; ///< margins of the sticking elements
   std::vector<MotionPart> indifferent; ///< directions without stiffness, each by its largest component
-  int more_indifferent = 0;            ///< number of further such directions
+  int more_indifferent = 0;            ///< number of further directions without stiffness
   std::vector<MotionPart> left;        ///< unstable equilibria that were left
   std::vector<int> slid;               ///< friction elements that slid before they stuck
   int turned_body = 0;                 ///< body without joints to the ground that turned furthest, if it tipped over; else 0

@@ -6,7 +6,7 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_named = 6; // largest number of names in a sentence; of more, the others are counted
+constexpr std::size_t k_named = 6; // largest number of names in a sentence; further ones are counted
 
 // Returns names as text: "'ball 1', 'ball 2' and 'ball 3'".
 std::string names_text(const System& system, const std::vector<int>& bodies) {

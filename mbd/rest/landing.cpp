@@ -10,7 +10,8 @@ namespace {
 
 constexpr double k_same_share = 1e-12;
 constexpr int k_most_halvings = 60;
-constexpr double k_least_measurement = 1e-3; // share of a step: least distance of measurements, so at most a thousand, as in a small model
+constexpr double k_least_measurement =
+    1e-3; // fraction of a step: least distance of measurements, so at most a thousand, as in a small model
 
 } // namespace
 

@@ -20,7 +20,7 @@ using MatrixEntry = Statics::MatrixEntry;
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 // Multiple of the largest eigenvalue below which eigenvalues may be rounding errors of the stiffness and its factors.
 constexpr double k_loose = 1000.0 * k_epsilon;
-constexpr double k_small = 1e-11; // share of the size of the model; smaller steps are rounding of the pose
+constexpr double k_small = 1e-11; // fraction of the size of the model; smaller steps are rounding of the pose
 constexpr int k_most_filters = 8;
 constexpr double k_well_inside = 0.5; // fraction of the trust region's radius; steps longer than this are accepted
 constexpr double k_close = 1.2;       // ratio of the bounds of σ at which the search ends: another factorisation is not worth its cost

@@ -13,7 +13,7 @@ namespace {
 // Rows whose independent part, relative to their length, is below this are dependent. The first value is for joints, the second for
 // friction, as in the equations of motion (theory.md).
 constexpr double k_rank = 1e-9, k_friction_rank = 1e-6;
-constexpr double k_least_radius = 1e-3; // share of the size of the model
+constexpr double k_least_radius = 1e-3; // fraction of the size of the model
 
 // Returns the indices of independent columns of `rows`: first those of joints (the first `joints` columns), then those of friction. Columns
 // have unit length.

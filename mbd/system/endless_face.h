@@ -20,7 +20,7 @@ struct EndlessFace {
   Vec2 origin;              ///< a point of the face, in b's axes from its centre of gravity, m
   Vec2 normal;              ///< unit vector towards a, in b's axes
   double low = 0.0;         ///< smallest coordinate of b's outline along (n_y, −n_x), from b's centre of gravity, m
-  double high = 0.0;        ///< largest such coordinate
+  double high = 0.0;        ///< largest coordinate in that direction, m
   std::string part;         ///< name of the body whose outline it is
   std::string remedy;       ///< clause for messages that says how the model can give the face an end
 };

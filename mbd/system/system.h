@@ -85,7 +85,7 @@ struct ChannelText {
 
 /// Meaning of a channel that is the same for all kinds of element, whatever the name of the channel.
 enum class ChannelRole : std::uint8_t {
-  none,         ///< no such meaning
+  none,         ///< no meaning of this kind
   margin,       ///< capacity of a joint over its load; below 1 the joint does not hold
   friction_use, ///< friction force over the largest one that friction can hold at that time
   strength_use, ///< force over the strength of the element, at which it breaks
@@ -175,7 +175,7 @@ public:
 
   std::string title;                                           ///< title of the model
   Vec2 gravity = Vec2::Zero();                                 ///< m/s², ground axes
-  SceneUnits scale;                                            ///< characteristic length and times of the scene
+  SceneUnits scale;                                            ///< characteristic length and times of the system
   std::vector<BodyData> bodies;                                ///< the ground first
   std::vector<std::string> element_names;                      ///< in the order of the model
   std::vector<std::string> element_kinds;                      ///< of each element

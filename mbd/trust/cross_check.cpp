@@ -29,7 +29,7 @@ constexpr double k_shrinking = 0.8;
 // Number of consecutive samples in which a difference must occur. In time stepping forces are averages over a step, so single samples do
 // not count.
 constexpr int k_persistent = 4;
-constexpr double k_brief_steps = 20.0; // a change that is reversed within so many fixed steps is not missed
+constexpr double k_brief_steps = 20.0; // events of an element nearer to each other than so many fixed steps are not compared
 constexpr double k_own_doubt = 1e-3;   // own error of an adaptive method above which it is reported
 constexpr double k_momentum_allowed = 1e-6;
 constexpr double k_rest_share = 1e-9; // fraction of the bodies' size: smaller position errors count as rest (run_comparison.cpp)

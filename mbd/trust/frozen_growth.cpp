@@ -33,7 +33,7 @@ constexpr double k_even = 1e-3; // fraction of the speed; smaller changes of vel
 constexpr double k_idle = 1e-9; // fraction of the largest force; a smaller reaction counts as none
 // Displacement by which contacts in touch are found, as a fraction of a body's size: far above rounding of gaps given as zero, far below
 // the compression by loads.
-constexpr double k_trial = 1e-9; // share of a body's size
+constexpr double k_trial = 1e-9; // fraction of a body's size
 constexpr std::uint64_t k_trials = 2;
 
 bool is_positive_definite(MatX p) {

@@ -43,7 +43,7 @@ public:
   [[nodiscard]] VecX along_directions(const VecX& weighted) const { return first_ * (first_.transpose() * weighted); }
   /// Returns true if a displacement along one of the directions() moves the body.
   [[nodiscard]] bool moves(std::size_t body) const {
-    constexpr double k_share = 1e-9; // share of a direction; less is rounding
+    constexpr double k_share = 1e-9; // part of a direction of length 1; less is rounding
     return first_.middleRows(3 * static_cast<Eigen::Index>(body) - 3, 3).cwiseAbs().sum() > k_share;
   }
   /// Returns true if all bodies move at constant velocity and none rotates; false at rest, and for systems with inner states.

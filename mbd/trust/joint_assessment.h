@@ -66,7 +66,7 @@ struct JointAssessment {
   double most_slide = 0.0;                 ///< limit of slid_share in the model
   Extreme overlap_left;                    ///< smallest remaining fraction of a corner's overlap
   Extreme clearance_left;                  ///< smallest, m; NaN if the model gives no clearance
-  Extreme edge_share;                      ///< largest line load of sheet edges relative to the allowed one; NaN if none is given
+  Extreme edge_share;                      ///< largest line load of sheet edges relative to the allowed one; NaN without an allowed one
   Extreme edge_load;                       ///< largest line load, N/m; NaN without edges
   Extreme edge_pressure;                   ///< Pa, edge_load over the thickness of the steel; NaN if that is not given
   std::optional<double> allowed_line_load; ///< N/m
