@@ -8,7 +8,7 @@ namespace steplap {
 /// Largest number of threads of a study, an assessment or samples; each takes some 50 MB.
 inline constexpr long k_most_threads = 1024;
 
-/// Largest factor by which the rate of a record may be raised. Ten samples for each of the record already interpolate it smoothly.
+/// Largest factor by which the rate of a record may be raised. With ten samples for each one of the record, the curve is smooth already.
 inline constexpr double k_most_resampling = 100.0;
 
 /// Largest number of keys in a table of a model file, such as [parameters]. Keys are searched one by one: reading 10 000 takes 0.5 s.

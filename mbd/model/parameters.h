@@ -27,7 +27,7 @@ struct ParameterFormula {
   Formula formula;             ///< its names() are parameters
   std::vector<std::size_t> of; ///< indices into Parameters::entries of names(), in the same order
 
-  /// Returns the value in SI units for the values of all parameters; NaN if there is no finite value.
+  /// Returns the result of the formula in SI units, given the values of all parameters; NaN if there is no finite result.
   [[nodiscard]] double value(const std::vector<double>& values) const;
 };
 

@@ -313,7 +313,8 @@ double Signal::value(double t) const {
 
 namespace {
 
-// Returns drive() for level acceleration on a piece with is_usual, without derivatives that are not needed. Bit-identical to evaluate().
+// Returns Signal::drive() at level acceleration, for a piece with Piece::is_usual. Bit-identical to evaluate(), but without the derivatives
+// that drive() does not need.
 [[gnu::noinline]] SignalJet driven_by_acceleration(const Signal::Piece& piece, double tau) {
   double value = piece.c[0], integral = tau * piece.c[0], double_integral = tau * tau * (piece.c[0] / 2);
   for (const Signal::Harmonic& h : piece.harmonics) {

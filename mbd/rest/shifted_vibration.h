@@ -63,7 +63,7 @@ private:
 /// Factors of σ² M + σ D̂ + K̂, bordered by the rows. For complex σ, real and imaginary parts are separate unknowns.
 class ShiftedResponse {
 public:
-  /// Factorises the matrix for this σ. Returns false if it is singular.
+  /// Factorises the matrix for the shift `sigma`. Returns false if it is singular.
   bool factor(const SparseVibration& scene, std::complex<double> sigma);
   /// Returns the solution a of (σ² M + σ D̂ + K̂) a + Jᵀ y = f, J a = 0.
   [[nodiscard]] Eigen::VectorXcd solve(const Eigen::VectorXcd& f) const;

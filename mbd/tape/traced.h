@@ -130,7 +130,7 @@ private:
   }
   static TapeNumber made_after_growing(TapeOperation operation, const TapeNumber& a, const TapeNumber& b, double value);
   static bool decided(const TapeNumber& a, const TapeNumber& b);
-  // Precondition for a constant: has_room().
+  // Returns the step of the number; for a constant, the step that adds the constant to the tape. Precondition for a constant: has_room().
   [[nodiscard]] std::int32_t step() const { return step_ >= 0 ? step_ : TapeWriter::now->put_constant(value_); }
 
   double value_ = 0.0;

@@ -105,8 +105,8 @@ struct CrossCheck {
   int refinements = 0; ///< number of repetitions made
 };
 
-/// Safety factor on error estimates. They are differences at single instants, of first order near events, and reliable to a factor of about
-/// two.
+/// Safety factor on error estimates. Estimates are differences at single instants, of first order near events, and reliable to a factor of
+/// about two.
 inline constexpr double k_margin = 5.0;
 inline constexpr double k_vague = 0.1;
 

@@ -39,9 +39,9 @@ public:
   /// Returns the number of directions in which nothing moves in the leg and which the rows leave free at its start. Rows on velocities
   /// count in a leg at rest only. One-sided rows count if they carry force.
   [[nodiscard]] Eigen::Index directions() const { return first_.cols(); }
-  /// Returns the component of W δ along the free directions in which nothing moves.
+  /// Returns the component of W δ along the directions that directions() counts.
   [[nodiscard]] VecX along_directions(const VecX& weighted) const { return first_ * (first_.transpose() * weighted); }
-  /// Returns true if a displacement along one of the directions() moves the body.
+  /// Returns true if a displacement along one of the directions that directions() counts moves the body.
   [[nodiscard]] bool moves(std::size_t body) const {
     constexpr double k_share = 1e-9; // part of a direction of length 1; less is rounding
     return first_.middleRows(3 * static_cast<Eigen::Index>(body) - 3, 3).cwiseAbs().sum() > k_share;
