@@ -10,8 +10,7 @@ namespace {
 
 constexpr double k_same_share = 1e-12;
 constexpr int k_most_halvings = 60;
-constexpr double k_least_measurement =
-    1e-3; // fraction of a step: least distance of measurements, so at most a thousand, as in a small model
+constexpr double k_least_measurement = 1e-3; // fraction of a step: least distance of measurements, so at most a thousand of them
 
 } // namespace
 
