@@ -31,7 +31,7 @@ constexpr double k_suspicious = 2.0;
 constexpr double k_memory = 1.0 / 16.0; // weight of the last step in running averages
 // explicit steps before the first trial of the implicit method, so that the averages cover these steps only
 constexpr int k_steps_before_trial = 32;
-// upper limit of this number: an unsuccessful trial costs about 40 explicit steps, so at most 4 %
+// upper limit of steps between trials: an unsuccessful trial costs about 40 explicit steps, so at most 4 %
 constexpr long k_most_before_trial = 1024;
 // After this many explicit steps the implicit method is tried even if the steps seem accurate, because k_accurate_share is known for
 // oscillations only. The number is multiplied by four after each unsuccessful trial, so that all trials together cost a few percent of a

@@ -17,7 +17,7 @@ constexpr double k_curvature_safety = 4.0;
 // For few nodes: |w″| in terms of the range of w, because second differences miss the curvature where w″ changes sign. A harmonic that
 // turns by 1.6 rad about such a point has |w″| up to 1.28 times the range of w.
 constexpr double k_bend_of_range = 2.0;
-// The corresponding factor for the utilisation of a joint with variable clamping pressure, 1 − 1/q with q = 1 + b (1 − cos 1.6 θ). Its
+// |w″| in terms of the range of w for the utilisation of a joint with variable clamping pressure, 1 − 1/q with q = 1 + b (1 − cos 1.6 θ). Its
 // curvature is 2.56 (1 + b) times its range where the pressure is least, and small elsewhere. b = 9 if the pressure falls to a tenth of
 // its mean.
 constexpr double k_bend_of_share = 25.6;

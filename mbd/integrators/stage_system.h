@@ -91,14 +91,14 @@ private:
     Eigen::Matrix<double, 6, 6> damping; ///< F_z A (g P + V)
   };
   std::vector<Inner> inner_;
-  // Own states: u_z = A (r_z + P u_q + V u_v), restricted to the coordinates on which they depend or act.
+  // Own states: u_z = A (r_z + P u_q + V u_v), restricted to the coordinates on which own states depend or act.
   void set_states();
   void factor_states();
   void add_state_forces(const double* r);
   void solve_states(const double* r, double* u);
   std::vector<int> states_;                            ///< indices of own states among the inner states
-  std::vector<int> state_columns_;                     ///< coordinates on which they depend
-  std::vector<int> state_rows_;                        ///< coordinates on which they act
+  std::vector<int> state_columns_;                     ///< coordinates on which own states depend
+  std::vector<int> state_rows_;                        ///< coordinates on which own states act
   MatX state_pose_, state_velocity_, state_force_;     ///< P, V, F_z
   MatX state_by_state_, state_answer_, state_damping_; ///< Z, A, F_z A (g P + V)
   VecX state_right_, state_solution_, state_moved_;

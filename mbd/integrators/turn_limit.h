@@ -59,7 +59,7 @@ private:
     for_angles(layout, [&](int i) { most = std::max(most, std::abs(y1[i] - y0[i])); });
     return most;
   }
-  /// Returns the angle of body a relative to b, or its rate. `values`: coordinates or their rates.
+  /// Returns the angle of body a relative to b, rad, or its rate, rad/s. `values`: coordinates or their rates.
   [[nodiscard]] static double relative_turn(const Layout& layout, const Turn& turn, const double* values);
   /// Returns the difference between the relative angle of the two bodies and that of their clusters, rad.
   [[nodiscard]] static double offset(const Layout& layout, const Turn& turn);
