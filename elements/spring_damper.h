@@ -12,7 +12,7 @@ namespace steplap {
 struct SpringDamper : Element {
   std::string a, b = "ground";
   std::optional<Vec2> axis; ///< in marker b's axes; not given: point to point
-  double across = 0.0;      ///< distance of its ends across the plane, m
+  double across = 0.0;      ///< distance of the ends across the plane, m
   double stiffness = 0.0, damping = 0.0;
   std::optional<double> free_length; ///< value of the measure at zero force, m
   std::optional<double> preload;     ///< f in the reference pose, N
@@ -23,7 +23,7 @@ struct SpringDamper : Element {
   long count = 1;
 };
 
-/// The same for the relative angle of two bodies.
+/// The corresponding spring and damper for the relative angle of two bodies.
 struct RotationalSpringDamper : Element {
   std::string a, b = "ground";
   double stiffness = 0.0, damping = 0.0;
@@ -32,7 +32,7 @@ struct RotationalSpringDamper : Element {
   double gap = 0.0;                ///< width of the dead band around the free angle, rad
   std::vector<Vec2> couple_table;  ///< (δ, −moment), replaces stiffness
   std::vector<Vec2> damping_table; ///< (δ̇, −moment), replaces damping
-  std::string between = "lines";   ///< as for SpringDamper
+  std::string between = "lines";   ///< interpolation of the tables: "lines" or "curve"
   long count = 1;
 };
 

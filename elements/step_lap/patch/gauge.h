@@ -20,13 +20,13 @@ struct Gauge {
   bool converged = false;
 };
 
-/// Solves the problem for |w| = 1. `warm`: initial direction, or zero; with a `subspace` (an orthogonal projector) w and `warm` must lie in
-/// it. `tolerance` applies to the projection of h∇h − w.
+/// Solves the problem for |w| = 1. `warm`: initial direction, or zero. With a `subspace` (an orthogonal projector) w and `warm` must lie in
+/// it. `tolerance`: largest length of the projection of h∇h − w.
 [[nodiscard]] Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, double tolerance,
                                const Mat3& subspace = Mat3::Identity());
 
-/// Acceptance test of a line search: sufficient decrease of a convex function, or, if rounding hides it, a sufficiently small slope without
-/// an increase beyond rounding (approximate Wolfe condition of Hager and Zhang).
+/// Acceptance test of a line search: sufficient decrease of a convex function. If rounding hides the decrease, a sufficiently small slope
+/// without an increase beyond rounding is accepted (approximate Wolfe condition of Hager and Zhang).
 [[nodiscard]] bool is_acceptable(double value0, double slope0, double value, double slope, double step);
 
 } // namespace steplap
