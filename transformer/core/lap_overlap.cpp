@@ -47,10 +47,10 @@ struct CachedLap {
   std::vector<Vec2> overlap;
 };
 
-} // namespace
+} // A lap with its overlap in the cache.
 
 void find_overlap(Lap& lap) {
-  constexpr std::size_t k_most = 4096; // a core with thirty packets has some hundreds
+  constexpr std::size_t k_most = 4096; // largest number of cached laps; a core with thirty packets has some hundreds
   static thread_local std::unordered_map<std::uint64_t, CachedLap> all_known;
   if (lap.yoke.outer.size() < 3 || lap.limb.outer.size() < 3) return;
   Fingerprint print;
