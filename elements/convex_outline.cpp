@@ -13,7 +13,7 @@ namespace steplap {
 
 namespace {
 
-// sine of the largest angle of a corner that counts as straight, for typed coordinates with few digits
+// Sine of the largest angle of a corner that counts as straight, for typed coordinates with few digits.
 constexpr double k_straight = 1e-9;
 
 std::string place_text(const Vec2& p) {

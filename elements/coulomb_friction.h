@@ -24,7 +24,7 @@ public:
   double level = 0.0; ///< θ_A − θ_B at which both feet touch, rad
   double mu_static = 0.0, mu_kinetic = 0.0;
   bool may_pull = false; ///< a contact may pull (law `literal`); friction ends where the sum of normal forces becomes zero
-  /// damping of the contacts, N s/m; mass of the lighter body, kg; distance of the contact from its centre of gravity, m
+  /// Damping of the contacts, N s/m; mass of the lighter body, kg; distance of the contact from its centre of gravity, m.
   double damping = 0.0, mass = 0.0, lever = 0.0;
 
   [[nodiscard]] const RowSpec* rows(const FrictionState& state) const override { return &feet[state.foot]; }
@@ -69,7 +69,7 @@ public:
   // on one line are level when the foot changes, so slip rate and force are continuous; only the slip acceleration jumps, by the distance
   // of the feet times the square of the angular velocity. The integration is restarted there, but no event is reported.
   [[nodiscard]] EventKind contact_switch_event(const FrictionState&, const FrictionState&) const override {
-    // tolerance of equal heights relative to the distance from the centre: rounding of coordinates in the file
+    // Tolerance of equal heights relative to the distance from the centre: rounding of coordinates in the file.
     constexpr double k_level_feet = 1e-12;
     const double height = feet[1].direction.dot(feet[1].point_b - feet[0].point_b);
     return has_two_feet && std::abs(height) <= k_level_feet * lever ? EventKind::none : EventKind::changes_foot;

@@ -32,7 +32,7 @@ std::vector<double> places_of_least(const Signal& signal, const Signal::Piece& p
     return places;
   }
   const double a = 3.0 * piece.c[3], b = piece.c[2], c = piece.c[1], root = std::sqrt(std::max(0.0, b * b - a * c));
-  // zeros of the slope: two for a cubic (first and second), one for a quadratic (third)
+  // Zeros of the slope: two for a cubic (first and second), one for a quadratic (third).
   for (const double tau : {(-b - root) / a, (-b + root) / a, -0.5 * c / b})
     if (const double t = piece.start + tau; t > start && t < end) places.push_back(t);
   return places;

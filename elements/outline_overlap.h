@@ -137,7 +137,7 @@ template <class S, class Depth> void cut(const CutRing<S>& in, const Depth& dept
   out.size = 0;
   if (in.size == 0) return;
   const auto put = [&out](const Pair<S>& corner, int edge) {
-    // capacity exceeded, only possible in slivers of rounding size, whose corners change sides more than twice: the rest is dropped
+    // Capacity exceeded, only possible in slivers of rounding size, whose corners change sides more than twice: the rest is dropped.
     if (out.size == k_most_ring) return;
     out.corner[out.size] = corner;
     out.edge[out.size++] = edge;

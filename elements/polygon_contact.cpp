@@ -255,7 +255,7 @@ public:
     const HoldingPlace& place = places[state.foot];
     const Heights h = heights(placed, place.face);
     const double best = separation_of(placed.a, placed.b).gap, own = h.least();
-    // negative if the present face has twice the penetration of the best one; both terms are negative while pressed
+    // Negative if the present face has twice the penetration of the best one; both terms are negative while pressed.
     const double face_left = own - 2.0 * best;
     return k_dead_band + std::min(face_left, left_of(h, place));
   }

@@ -74,7 +74,7 @@ void compile_prescribed(const Element& element, SystemBuilder& builder) {
   if (const auto jump = row.drive->first_jump(row.level, 0.0, builder.model().simulation.end)) return builder.error(jump_message(e, *jump));
   const double now = evaluate_row<false>(row, &builder.reference(0)).value;
   const double base = e.zero == "reference" ? now : 0.0;
-  // necessary even for a position relative to the reference pose, because the start would move the body without notice
+  // Necessary even for a position relative to the reference pose, because the start would move the body without notice.
   if (row.level == DriveLevel::position)
     if (const double wanted = base + row.drive->value(0.0); jumps(now, wanted)) return builder.error(start_message(e, row, now, wanted));
   row.base = builder.add_base(base);

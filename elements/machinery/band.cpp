@@ -16,7 +16,7 @@ namespace {
 
 using Group = SlidingBandGroup;
 
-// smallest length of a free part, relative to its length in the reference pose; equal to that of ropes
+// Smallest length of a free part, relative to its length in the reference pose; equal to that of ropes.
 constexpr double k_shortest = 1e-6;
 constexpr double k_least_angle = 1e-6; // smallest wrap angle, rad; below it the band does not touch its drum
 

@@ -46,7 +46,7 @@ public:
     find_material();
     find_damping();
     if (!problems_.empty())
-      // dummy values, so that references to the beam cause no further errors
+      // Dummy values, so that references to the beam cause no further errors.
       values_ = {1.0, Vec2::UnitX(), 1.0, 1.0, {1.0, 1.0, 1.0}, 0.0};
     for (long i = 0; i <= beam_.segments; ++i) add_segment(i);
     for (long i = 1; i <= beam_.segments; ++i) add_part(i);

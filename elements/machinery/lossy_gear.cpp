@@ -49,7 +49,7 @@ public:
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>& out) const override {
     for (const ElementData& entry : entries) {
       const int bodies[3] = {entry.a, entry.b, entry.carrier};
-      // derivatives of δ with respect to the three angles; the moments are −M times these
+      // Derivatives of δ with respect to the three angles; the moments are −M times these.
       const double by_angle[3] = {1.0, -entry.ratio, entry.ratio - 1.0};
       for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column) {

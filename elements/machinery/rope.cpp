@@ -268,7 +268,7 @@ std::vector<RowSpec> rows_of(const std::vector<RopePart>& parts, SystemBuilder& 
 // Adds an inextensible rope. `entry`: data as for an elastic rope; `now`: length in the reference pose, m; `length`: full length, m.
 void add_inextensible(const RopeGroup::ElementData& entry, double now, double length, SystemBuilder& builder) {
   constexpr double k_least_acceleration = 1e-11; // tensions that accelerate the lightest body by less, m/s², are rounding
-  // dead band of the length: relative to the length; at least in m, above the residuals after projection
+  // Dead band of the length: relative to the length; at least in m, above the residuals after projection.
   constexpr double k_dead_band = 1e-11, k_least_band = 4e-12;
   refuse_time_stepping(builder);
   if (now > length * (1.0 + OneSidedRow::k_too_long))

@@ -87,7 +87,7 @@ ByState by_state(const Group::ElementData& entry, UnitMode mode) {
   const double k0 = entry.parts[0].stiffness, k1 = entry.parts[1].stiffness;
   ByState by;
   if (mode < Group::k_sticks) return by;
-  // equals −(k_1 + E k_0)/(c_1 + E c_0), or the corresponding value for the other direction
+  // Equals −(k_1 + E k_0)/(c_1 + E c_0), or the corresponding value for the other direction.
   if (mode != Group::k_sticks) by.slip = -1.0 / entry.time;
   by.tension = {k0 * (1.0 + entry.time * by.slip), -k1 * (1.0 + entry.time * by.slip)};
   return by;

@@ -21,7 +21,7 @@ struct Tie : Element {
   std::optional<double> preload;     ///< total preload in the reference pose, N, tension positive
   std::optional<double> strength;    ///< strength of one tie, N
   std::string on_break = "continue"; ///< "continue" or "stop": what the run does when the tie breaks
-  /// consequence of breaking for the verdict: "reject", "inspect", or "none" for a predetermined breaking point
+  /// Consequence of breaking for the verdict: "reject", "inspect", or "none" for a predetermined breaking point.
   std::string consequence = "reject";
   long count = 1;
 };

@@ -85,7 +85,7 @@ public:
     int inner = 0; ///< index of the inner state p
     int link = 0, unit = 0, first_event = 0, contact = 0;
   };
-  /// two event functions of the contact, two of the tread, one for the direction of rotation, one for its speed
+  /// Two event functions of the contact, two of the tread, one for the direction of rotation, one for its speed.
   static constexpr int k_event_count = 6;
   std::vector<ElementData> entries;
 

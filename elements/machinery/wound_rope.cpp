@@ -14,7 +14,7 @@ namespace steplap {
 
 namespace {
 
-// smallest length of the straight part, relative to that in the reference pose; equal to that of ropes
+// Smallest length of the straight part, relative to that in the reference pose; equal to that of ropes.
 constexpr double k_shortest = 1e-6;
 
 class WoundRopeGroup final : public ForceGroup {

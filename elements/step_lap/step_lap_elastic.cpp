@@ -214,7 +214,7 @@ void ElasticGripGroup::add_inner_jacobian(const Evaluation& e, std::vector<Inner
     j.b = entry.b;
     j.first = entry.inner;
     j.count = 3;
-    // derivatives of s with respect to the poses; of ṡ with respect to poses and velocities
+    // Derivatives of s with respect to the poses; of ṡ with respect to poses and velocities.
     Eigen::Matrix<double, 3, 6> gradient, turning, moving;
     for (int r = 0; r < 3; ++r) {
       D12 along[6];

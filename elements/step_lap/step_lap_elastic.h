@@ -38,7 +38,7 @@ public:
     int inner = 0;
     int link = 0, unit = 0, first_event = 0;
   };
-  /// event functions: bound or flow; separation of interfaces; sharpness of the corner of the limit surface
+  /// Event functions: bound or flow; separation of interfaces; sharpness of the corner of the limit surface.
   static constexpr int k_event_count = 3;
   std::vector<ElementData> entries;
 

@@ -255,7 +255,7 @@ const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   const Vec3 w = wrench(s);
   const Pose pose = present(s);
   const PressureState now = pressure_at(s.t);
-  // the pose is constant, so expansions (Fit::tabulated()) pay off
+  // The pose is constant, so expansions (Fit::tabulated()) pay off.
   const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick;
   const bool is_known = knows_usage(s, w);
   const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y && own.asked_at.theta == pose.theta &&

@@ -374,7 +374,7 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   add_wrench_channels(builder, *friction);
   if (friction->has_sheets()) {
     add_usage_channels(builder, *friction, *interfaces.front());
-    // gravity, m/s², for the weight in a model that shows the limb from above, without gravity in its plane
+    // Gravity, m/s², for the weight in a model that shows the limb from above, without gravity in its plane.
     constexpr double k_standard_gravity = 9.80665;
     const double gravity = builder.model().header.gravity.norm();
     add_share_channels(builder, *friction, interfaces, mass_of(e.limb, builder).mass * (gravity > 0.0 ? gravity : k_standard_gravity));

@@ -21,7 +21,7 @@ struct StepLapJoint : Element {
   std::string on_apart = "stop";              ///< effect on the run when the joint comes apart: "stop" or "continue"
   std::optional<double> tangential_stiffness; ///< stiffness of the whole joint in translation, N/m
   std::optional<double> contact_stiffness;    ///< stiffness of one interface per area, N/m³
-  /// thickness t, m, and shear modulus G, Pa, of a sheet, which add the compliance t/G
+  /// Thickness t, m, and shear modulus G, Pa, of a sheet, which add the compliance t/G.
   std::optional<double> sheet_thickness, shear_modulus;
   std::optional<double> edge_stiffness;    ///< line load per penetration, of all sheets at a corner, N/m²
   std::optional<double> allowed_line_load; ///< largest line load on all sheets at a corner together, N/m

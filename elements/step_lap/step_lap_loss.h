@@ -16,7 +16,7 @@ namespace steplap {
 /// Loss of overlap of one joint relative to the reference pose.
 struct OverlapLoss {
   double area_lost = 0.0; ///< lost area, m²: sum over the interfaces that lost area, times their numbers
-  /// remaining fraction of the overlap, for the corner that lost most; 0: separated completely, or no overlap from the start
+  /// Remaining fraction of the overlap, for the corner that lost most; 0: separated completely, or no overlap from the start.
   double overlap_left = 1.0;
   double slid_share = 0.0; ///< largest displacement of a corner relative to the width of its overlap
   double clearance_left = std::numeric_limits<double>::infinity(); ///< smallest remaining clearance, m, over the interfaces that have one

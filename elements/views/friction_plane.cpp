@@ -19,7 +19,7 @@ namespace {
 constexpr double k_one_line = 1e-6;     // tolerance for the direction of contacts whose friction is summed
 constexpr double k_same_load = 0.02;    // tolerance for normal forces of one contact in two independent models
 constexpr double k_same_gravity = 1e-6; // tolerance for the magnitude of gravity
-// transverse component, relative to mu N, below which one plane decides alone: it reduces the capacity by less than 0.1 %
+// Transverse component, relative to mu N, below which one plane decides alone: it reduces the capacity by less than 0.1 %.
 constexpr double k_part_of_other = 0.05;
 
 const CoulombFriction* friction_of(const System& system, const std::string& element) {
@@ -171,7 +171,7 @@ double SharedContact::normal(const std::array<SampledFriction, 2>& traces, std::
 }
 
 SharedUse shared_use(const SharedContact& contact, const std::array<SampledFriction, 2>& traces) {
-  // relative to the load at rest: a lower normal force counts as unloaded; relative to mu N: from here on both planes slip together
+  // Relative to the load at rest: a lower normal force counts as unloaded; relative to mu N: from here on both planes slip together.
   constexpr double k_unloaded = 1e-6, k_full = 1.0 - 1e-9;
   const double mu = std::min(traces[0].mu_static, traces[1].mu_static);
   SharedUse found;

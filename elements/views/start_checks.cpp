@@ -13,7 +13,7 @@ namespace steplap {
 
 namespace {
 
-// largest acceleration relative to that due to loads; a body that leans on a stiff stop is near its equilibrium
+// Largest acceleration relative to that due to loads; a body that leans on a stiff stop is near its equilibrium.
 constexpr double k_leans = 2.0;
 
 // Checks the gap at the start. It can contradict the poses only if a gap, an interference or a preload is given, which shifts the contact

@@ -14,7 +14,7 @@ constexpr int k_max_samples = 130;
 constexpr int k_free_samples = 60;    // maximum number of samples by interpolation; then at most 70 bisections follow
 constexpr int k_patience = 6;         // consecutive samples that may fail to halve the bracket before a bisection
 constexpr double k_least_reach = 4.0; // smallest half-width of the bracket, in spacings of floating-point numbers at t
-// location error of the root, as fraction of the tolerance relative to the step; errors of the motion are larger
+// Location error of the root, as fraction of the tolerance relative to the step; errors of the motion are larger.
 constexpr double k_tolerance_share = 1e-6;
 constexpr double k_most_tolerance = 1e-3; // larger tolerances, used only to obtain steps of a fixed length, do not increase this error
 // an estimate that changes by more than this multiple of the predicted error is affected by rounding

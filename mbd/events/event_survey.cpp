@@ -265,7 +265,7 @@ EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynam
   for (int parts = 0; !intervals_.empty(); ++parts) {
     const Interval interval = intervals_.back();
     intervals_.pop_back();
-    // limit of the work in one step: the step ends at low_; no event was found up to there
+    // Limit of the work in one step: the step ends at low_; no event was found up to there.
     if (parts >= k_most_intervals && interval.begin > 0.0) {
       fired_.clear();
       high_ = low_;

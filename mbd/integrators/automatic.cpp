@@ -20,25 +20,25 @@ namespace {
 
 constexpr double k_loose = 1e-5;  // tolerance above which order 5 is cheaper than order 8
 constexpr double k_limited = 0.8; // stability share from which a step counts as limited by stability
-// consecutive limited steps before the implicit method continues; accurate steps have shares far below k_limited
+// Consecutive limited steps before the implicit method continues; accurate steps have shares far below k_limited.
 constexpr int k_steps_limited = 5;
 constexpr int k_steps_implicit = 60; // implicit steps before the explicit method is tried again
 constexpr double k_worth = 6.0;      // cost of an implicit step relative to an explicit one
 // Stability share of an accurate dop853 step on an oscillation at tolerance 1e-8; proportional to the eighth root of the tolerance.
 constexpr double k_accurate_share = 0.26;
-// factor on k_accurate_share: a higher mean share indicates that stability, not accuracy, limits the step
+// Factor on k_accurate_share: a higher mean share indicates that stability, not accuracy, limits the step.
 constexpr double k_suspicious = 2.0;
 constexpr double k_memory = 1.0 / 16.0; // weight of the last step in running averages
-// explicit steps before the first trial of the implicit method, so that the averages cover these steps only
+// Explicit steps before the first trial of the implicit method, so that the averages cover these steps only.
 constexpr int k_steps_before_trial = 32;
-// upper limit of steps between trials: an unsuccessful trial costs about 40 explicit steps, so at most 4 %
+// Upper limit of steps between trials: an unsuccessful trial costs about 40 explicit steps, so at most 4 %.
 constexpr long k_most_before_trial = 1024;
 // After this many explicit steps the implicit method is tried even if the steps seem accurate, because k_accurate_share is known for
 // oscillations only. The number is multiplied by four after each unsuccessful trial, so that all trials together cost a few percent of a
 // long run.
 constexpr long k_steps_before_any = 128;
 constexpr int k_steps_to_grow = 8; // steps of a resumed method until its length is representative, with a growth of up to six per step
-// steps that grow by more than this factor are not compared: after an event a trial begins with short steps
+// Steps that grow by more than this factor are not compared: after an event a trial begins with short steps.
 constexpr double k_grows = 1.2;
 
 class Automatic final : public Integrator {
@@ -152,7 +152,7 @@ private:
     is_started_ = false;
     if (!is_explicit) {
       const bool is_in_vain = implicit_->steps() - implicit_steps_before_ <
-                              // fewer steps: the trial was ended by short steps, each of which adds k_steps_implicit / 6 to count_
+                              // Fewer steps: the trial was ended by short steps, each of which adds k_steps_implicit / 6 to count_.
                               k_steps_implicit / 2;
       if (is_trial_) steps_before_trial_ = is_in_vain ? std::min(2 * steps_before_trial_, k_most_before_trial) : k_steps_before_trial;
       if (is_trial_) steps_before_any_ = is_in_vain ? 4 * steps_before_any_ : k_steps_before_any;
@@ -177,7 +177,7 @@ private:
   double suspicious_share_;
   double mean_share_ = 0.0, mean_step_ = 0.0; ///< averages over explicit steps; mean_step_ in s
   long steps_explicit_ = 0,
-       /// explicit steps since the explicit method was resumed; number of them before the next trial
+       /// Explicit steps since the explicit method was resumed; number of them before the next trial.
       steps_before_trial_ = k_steps_before_trial;
   long steps_before_any_ = k_steps_before_any;
   double last_step_ = 0.0;     ///< length of the previous step, s

@@ -27,7 +27,7 @@ struct EventEnd {
 /// An event function in a step.
 struct EventStep {
   int slot = 0;
-  /// the slot belongs to a joint whose bodies are merged into one cluster; such joints are not evaluated at every stage
+  /// The slot belongs to a joint whose bodies are merged into one cluster; such joints are not evaluated at every stage.
   bool is_merged = false;
   bool is_of_joint = false; ///< the slot belongs to a step-lap joint, whose capacity is proportional to its clamping force
   EventEnd start, end;

@@ -21,8 +21,8 @@ constexpr double k_reach = 1.5;
 constexpr double k_noise = 1e-6;  // accuracy of utilisations; wrenches converge to this (time_stepping.cpp)
 constexpr double k_glance = 1e-3; // averaging time of loads before a probed position, relative to the part
 constexpr double k_unlike_parabola =
-    // allowance for the deviation from a parabola, relative to the curvature within a part: harmonics turn by at most 0.4 rad per
-    // part, and the reciprocal of one may curve more
+    // Allowance for the deviation from a parabola, relative to the curvature within a part: harmonics turn by at most 0.4 rad per
+    // part, and the reciprocal of one may curve more.
     0.3;
 constexpr double k_places[] = {0.125, 0.5625, 1.0}; // positions within a part; the last is its end
 

@@ -188,12 +188,12 @@ protected:
   TurnLimit turn_limit_;
   DividedSteps divided_;
   double last_rigid_joint_evaluation_ = 0.0; ///< theta of the last evaluation of joints inside clusters
-  /// per velocity: speed scale of slip (Dynamics::slip_scales) at the start and the end of the step
+  /// Per velocity: speed scale of slip (Dynamics::slip_scales) at the start and the end of the step.
   std::vector<double> slip_scale0_, slip_scale1_;
   std::vector<double> slip_scale_inside_; ///< speed scale of slip at the end of the used part of the step
   bool has_slip_scale0_ = false, has_slip_scale1_ = false;
   double slip_care_ = 1.0; ///< factor on the permitted errors of slip velocities; below 1 for methods whose dense output is not checked
-  /// fastest decay rate of velocity-dependent friction at the start of the next step, 1/s; 0 for adaptive methods
+  /// Fastest decay rate of velocity-dependent friction at the start of the next step, 1/s; 0 for adaptive methods.
   double decay_rate_ = 0.0;
   long steps_ = 0, rejections_ = 0;
   Residual residual_;

@@ -41,7 +41,7 @@ public:
     n_ = dynamics.dimension();
     dynamics.pack(start_, y0_.data());
     dynamics.pack(state_, y1_.data());
-    // event functions and rates are not used: the method restarts after each step
+    // Event functions and rates are not used: the method restarts after each step.
     std::fill(event_value1_.begin(), event_value1_.end(), 1.0);
     ++steps_;
   }

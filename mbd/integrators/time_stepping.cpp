@@ -11,7 +11,7 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_mode_passes = 12; // if contact modes have not converged after this many passes, the step is halved
-// limit of passes for the normal forces at the end of the step; without convergence the step is halved
+// Limit of passes for the normal forces at the end of the step; without convergence the step is halved.
 constexpr int k_max_force_passes = 60;
 constexpr int k_passes_in_full = 12;  // later passes apply half of the change, so that an alternation between two states converges
 constexpr int k_passes_repeated = 20; // later passes linearise the bounds as functions of the wrenches, because plain iteration diverges

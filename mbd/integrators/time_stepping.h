@@ -71,7 +71,7 @@ private:
     Mat3 free = Mat3::Identity();               ///< if driven: projection onto the directions that are not driven
     double noise = 0.0;                         ///< velocity in driven directions that counts as rest, m/s or rad/s
     double own[9] = {};                         ///< compliance of the element's rows, dimension × dimension
-    /// for dimension 1: bound, N, at the wrench bound_at_; ratio of the kinetic to the static bound
+    /// For dimension 1: bound, N, at the wrench bound_at_; ratio of the kinetic to the static bound.
     double bound = 0.0, kinetic_share = 1.0;
     BlockSolution block;
 
@@ -177,7 +177,7 @@ private:
   std::vector<double> overload_;            ///< per element: wrench needed to stick, relative to the static capacity
   std::vector<double> together_, rest_, softness_; ///< per row: wrenches of hold_rows(); remaining rates; regularisation
   std::vector<Sticking> sticking_, sticking_now_;  ///< per friction element, for the previous and the present part
-  /// per friction element: utilisations at the probed positions (inner_slips.cpp)
+  /// Per friction element: utilisations at the probed positions (inner_slips.cpp).
   std::vector<std::array<double, k_glances>> glance_usage_;
   double held_time_ = std::numeric_limits<double>::quiet_NaN(); ///< fixed time of loads, s (hold_time()); NaN: none
   double glance_ = 0.0; ///< averaging time of loads before the end of the part, s; 0: the whole part

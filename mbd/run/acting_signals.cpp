@@ -113,7 +113,7 @@ private:
     std::vector<SignalSpan>& spans = found->second.use->spans;
     // an interval of zero length is kept only as the first one, for the reason of its end
     if (!(t > found->second.since) && !spans.empty()) return;
-    // continues an interval: the field was set to the value that it already had
+    // Continues an interval: the field was set to the value that it already had.
     const bool goes_on = !spans.empty() && spans.back().to == found->second.since;
     if (goes_on) spans.back().to = t, spans.back().cut = cut;
     else spans.push_back({found->second.since, t, cut});

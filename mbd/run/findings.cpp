@@ -172,7 +172,7 @@ bool is_driven_at_start(const Model& model, const Names& used) {
 
 // Initial accelerations of the bodies, and contact forces at the start.
 struct Start {
-  /// per body, m/s²: acceleration of the centre of gravity, or angular acceleration times radius of gyration
+  /// Per body, m/s²: acceleration of the centre of gravity, or angular acceleration times radius of gyration.
   std::vector<double> acceleration;
   std::vector<ContactAtStart> contacts;
   std::vector<PairJacobian> springs;

@@ -33,10 +33,10 @@ bool uses_time(const ElementEntry& entry) {
 
 namespace {
 
-// samples within the run, in the k_near run lengths after it, and in a geometric sequence from there to k_behind
+// Samples within the run, in the k_near run lengths after it, and in a geometric sequence from there to k_behind.
 constexpr int k_samples = 200;
 constexpr double k_near = 10.0; // range of the evenly spaced samples after the end, in run lengths
-// smallest excess over values of the run, as ratio; peaks of sums of harmonics differ by less from interval to interval
+// Smallest excess over values of the run, as ratio; peaks of sums of harmonics differ by less from interval to interval.
 constexpr double k_larger = 1.25;
 constexpr double k_far = 100.0;  // range in which a load reaches its full size, if it has one, in run lengths
 constexpr double k_behind = 1e4; // last sample, in run lengths

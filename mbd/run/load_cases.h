@@ -67,7 +67,7 @@ void keep_case_criteria(const LoadCase& one, Model& model);
 struct CaseReading {
   std::vector<std::string> channels; ///< names of channels
   double step = 0.0;                 ///< sampling interval, s
-  /// called with the index and report of each case that started, from any thread; may be empty
+  /// Called with the index and report of each case that started, from any thread; may be empty.
   std::function<void(std::size_t, const Report&)> take = {};
 };
 

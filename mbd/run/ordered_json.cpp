@@ -51,7 +51,7 @@ private:
   }
 
   OrderedJson& root_;
-  /// containers being filled, from the root inwards; each is the last entry of the previous one, whose size does not change meanwhile
+  /// Containers being filled, from the root inwards; each is the last entry of the previous one, whose size does not change meanwhile.
   std::vector<OrderedJson*> open_;
   std::string name_;
 };

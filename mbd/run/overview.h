@@ -35,7 +35,7 @@ struct Overview {
   bool is_judged = false;          ///< true if there is a verdict: criteria exist, or the run is unreliable
   std::string reason;              ///< reason of the verdict, one sentence
   Trust trust;                     ///< reliability of the numbers
-  /// time of the highest utilisation, s, among judged criteria; among all limits if there are no criteria
+  /// Time of the highest utilisation, s, among judged criteria; among all limits if there are no criteria.
   std::optional<double> worst_instant;
   std::vector<StoryEntry> story;         ///< events in order of time
   std::vector<Utilisation> utilisations; ///< sorted, highest first

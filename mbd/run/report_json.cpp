@@ -361,7 +361,7 @@ OrderedJson judgement_json(const Judgement& judgement) {
                         {"error_t", optional(c.t_error)},
                         {"doubt", c.doubt}});
     if (c.value) note_infinity(criteria.back(), "value", *c.value);
-    // distinguishes an unknown error from one that was not estimated, which is null, too
+    // Distinguishes an unknown error from one that was not estimated, which is null, too.
     if (c.error && !std::isfinite(*c.error)) criteria.back()["error_is"] = "unknown";
     if (c.t_error && !std::isfinite(*c.t_error)) criteria.back()["error_t_is"] = "unknown";
   }

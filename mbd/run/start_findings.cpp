@@ -21,13 +21,13 @@ namespace steplap {
 
 namespace {
 
-// largest opening acceleration, relative to that due to loads; contacts that settle under loads stay within a few times of it
+// Largest opening acceleration, relative to that due to loads; contacts that settle under loads stay within a few times of it.
 constexpr double k_unanswered = 10.0;
 constexpr double k_felt = 0.1;    // least opening acceleration, relative to gravity; smaller ones come from rounded poses or clearance
 constexpr double k_through = 0.5; // largest penetration, relative to the depth at which a contact law becomes invalid
-// least moment of inertia, relative to a homogeneous plate with the outline: a tenth of its radius of gyration
+// Least moment of inertia, relative to a homogeneous plate with the outline: a tenth of its radius of gyration.
 constexpr double k_light = 0.01;
-// change of a state within the run, relative to its scale, above which the machine leaves the equilibrium
+// Change of a state within the run, relative to its scale, above which the machine leaves the equilibrium.
 constexpr double k_changes = 1e-3;
 // Largest moment of inertia, relative to the largest one possible within the outline (all mass at the farthest corner); outlines are
 // approximate.

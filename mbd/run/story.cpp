@@ -100,7 +100,7 @@ public:
   }
 
 private:
-  // smallest reported rotation, rad; smaller ones are rocking on springs
+  // Smallest reported rotation, rad; smaller ones are rocking on springs.
   static constexpr double k_tipped = 5.0 / 180.0 * std::numbers::pi;
 
   const ElementEntry* entry_of(const std::string& element) const {

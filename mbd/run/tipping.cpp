@@ -181,7 +181,7 @@ private:
     if (!(std::abs(nearest) < 0.5 * k_pi)) return std::nullopt;
     Tipping tipping;
     tipping.margin = now > 0.0 ? -std::abs(nearest) : std::abs(nearest);
-    // gravity turned in one sense corresponds to the ground tilted in the opposite sense
+    // Gravity turned in one sense corresponds to the ground tilted in the opposite sense.
     tipping.is_clockwise = (nearest > 0.0) == (now <= 0.0);
     if (std::abs(of_turned) > k_rank * size) tipping.acceleration = std::abs(now / of_turned) * scene_.system().gravity.norm();
     if (const auto slope = scene_.slope_below(part)) {

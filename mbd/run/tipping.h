@@ -27,7 +27,7 @@ struct Tipping {
   double margin = 0.0; ///< |φ|, rad; negative if the part tips in its present pose: it would be stable after tilting back by this angle
   bool is_clockwise = true;  ///< direction in which the ground is tilted
   double acceleration = 0.0; ///< smallest acceleration of the support that tips the part, m/s²; zero if none does
-  /// slope of the support in the present pose and at the limit, rad; empty unless all feet are on one plane
+  /// Slope of the support in the present pose and at the limit, rad; empty unless all feet are on one plane.
   std::optional<double> slope, slope_at_most;
 };
 

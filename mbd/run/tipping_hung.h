@@ -22,7 +22,7 @@ struct HungLoad {
 struct Hanging {
   std::vector<HungLoad> loads; ///< one for each hanging load
   std::vector<char> is_hung;   ///< per body: belongs to a hanging load
-  /// per body: correction of the element forces on bodies that carry loads, from the present motion to loads at rest
+  /// Per body: correction of the element forces on bodies that carry loads, from the present motion to loads at rest.
   std::vector<BodyForce> correction;
   std::vector<std::string> by; ///< names of the suspending elements
 };

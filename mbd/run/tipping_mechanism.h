@@ -20,9 +20,9 @@ struct Blocks {
   VecX weight, turned, loads; ///< A, B, C
 };
 
-/// rotation φ of gravity, rad
+/// Tilt at which blocks collapse, and the motion of the collapse.
 struct Collapse {
-  double turned = 0.0; ///< φ of gravity, rad
+  double turned = 0.0; ///< rotation φ of gravity, rad
   VecX motion;         ///< motion of the collapse, normalised
   VecX gap_forces;     ///< contact forces of the last possible balance, at φ; empty if there is none
   VecX joint_forces;   ///< joint forces of that balance, with the least norm

@@ -225,7 +225,7 @@ std::vector<Utilisation> utilisations_of(const Report& report, const RangeIndex&
 }
 
 double reserve_of(const Report& report) {
-  // smallest reserve with the sign of the verdict: "hold" can also be prevented by findings and errors that no utilisation contains
+  // Smallest reserve with the sign of the verdict: "hold" can also be prevented by findings and errors that no utilisation contains.
   constexpr double k_least = 1e-9;
   double least = 1.0;
   for (const Utilisation& u : utilisations_of(report, RangeIndex(report.ranges()))) {

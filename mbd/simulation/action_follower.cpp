@@ -12,7 +12,7 @@ namespace {
 
 // Times that differ by less than this, relative to the time or to the scene's characteristic time, are equal.
 constexpr double k_same_instant = 1e-13;
-// executions of one action at one time, if events between its executions trigger it repeatedly
+// Executions of one action at one time, if events between its executions trigger it repeatedly.
 constexpr std::ptrdiff_t k_most_at_once = 20;
 
 RunStatistics sum_of(const RunStatistics& a, const RunStatistics& b) {

@@ -13,7 +13,7 @@ namespace steplap {
 
 void check_sticking(const System& system, const State& state, const LoadSharing* sharing, double t,
                     const std::vector<double>& event_value) {
-  // limit relative to the capacity: the mode problem is accurate to 1e-9 of it, and events are located to rounding
+  // Limit relative to the capacity: the mode problem is accurate to 1e-9 of it, and events are located to rounding.
   constexpr double k_stuck_beyond = 1e-6;
   for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
     const FrictionUnit& unit = system.frictions[f];

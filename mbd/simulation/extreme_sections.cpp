@@ -24,7 +24,7 @@ constexpr int k_last = NodePolynomial::k_last; // index of the last node, at the
 constexpr int k_most_sections = 40;
 constexpr double k_same_place = 1e-7; // smallest interval relative to the stretch; its square is the remaining error of a maximum
 constexpr double k_golden = 0.3819660112501051;
-// storing stops if after this number of points fewer than one in k_least_use was reused
+// Storing stops if after this number of points fewer than one in k_least_use was reused.
 constexpr std::size_t k_trial = 50, k_least_use = 4;
 constexpr std::size_t k_most_kept = std::size_t{1} << 20U; // largest number of stored values (16 MB)
 
@@ -66,7 +66,7 @@ class Places {
 public:
   struct Place {
     bool is_singular = false; ///< near a singular position of joints
-    /// values in the order of the open channels; empty for channels already finished, or if the evaluation failed
+    /// Values in the order of the open channels; empty for channels already finished, or if the evaluation failed.
     std::vector<std::optional<double>> value;
   };
 

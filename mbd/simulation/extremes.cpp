@@ -25,7 +25,7 @@ constexpr double k_surprise = 3.0;
 // Weight of the curvature from earlier stretches, because a long step may contain an oscillation whose ends show no curvature.
 constexpr double k_remembered = 0.5;
 constexpr double k_samples_per_period = 8.0; // samples per period of the fastest load
-// distance from both extremes, relative to the range of a channel, above which values are ignored if the curvature is small enough
+// Distance from both extremes, relative to the range of a channel, above which values are ignored if the curvature is small enough.
 constexpr double k_within_reach = 0.25;
 constexpr double k_bit_of_slack = 0.1; // accuracy of a polynomial's maximum, relative to the tolerance
 // One error estimate in a hundred is too small by up to this factor. A maximum is evaluated if its estimate times this factor exceeds the
@@ -35,7 +35,7 @@ constexpr double k_same_crossing = 1e-10; // accuracy of crossing times, relativ
 // At most this number of channels are searched separately without a test for rounding noise.
 constexpr std::size_t k_few = 8;
 constexpr int k_most_probes = 8;
-// time shift of the test for rounding noise, relative to the stretch: smooth curves and kinks change by 1/100 of the differences between nodes
+// Time shift of the test for rounding noise, relative to the stretch: smooth curves and kinks change by 1/100 of the differences between nodes
 constexpr double k_hair = 1.25e-4;
 // a channel that changes by more over a few time shifts, relative to the differences between nodes, is noise
 constexpr double k_jitter = 0.25;
@@ -466,7 +466,7 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
       take(c, t_ + theta * (t1_ - t_), snapshot, node_[i].data());
       double guess = k_unknown;
       if (level > 1) guess = interpolated(node_, c, level - 1, *weights);
-      // deviation of the middle from the parabola through the ends of this stretch and the start of the previous one
+      // Deviation of the middle from the parabola through the ends of this stretch and the start of the previous one.
       else if (h_last_ > 0.0) {
         const double h = t1_ - t_, a = at(c, 0), b = at(c, k_last);
         const double bend = ((b - a) - (a - before_[c]) * (h / h_last_)) / (1.0 + h_last_ / h);

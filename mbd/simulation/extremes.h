@@ -48,7 +48,7 @@ struct ChannelRange {
   /// Amount by which low and high exceed the values at times when the direction of every slip was known; NaN if there were no such times.
   double unsure_low = 0.0, unsure_high = 0.0;
   bool had_no_value = false; ///< the value was NaN at some time
-  /// the extreme was reached near a singular position of joints, where reactions may diverge
+  /// The extreme was reached near a singular position of joints, where reactions may diverge.
   bool is_low_singular = false, is_high_singular = false;
   std::optional<double> first_above_one; ///< time, s, at which a channel without unit first exceeded 1
 

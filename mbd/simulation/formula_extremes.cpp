@@ -17,7 +17,7 @@ constexpr int k_most_panels = 96;     // largest number of panels in one stretch
 constexpr int k_few_panels = 8;
 constexpr int k_run_panels = 20000;
 constexpr int k_deepest_panel = 40;
-// largest number of bisections: a formula without value for less than 1e-7 of a stretch is not reported
+// Largest number of bisections: a formula without value for less than 1e-7 of a stretch is not reported.
 constexpr int k_deepest_missing = 24;
 constexpr long k_missing_spans = 2000;
 constexpr double k_shortest = 0x1p-51;    // shortest interval, relative to the stretch or to t; its ends are equal up to rounding
@@ -274,7 +274,7 @@ void FormulaExtremes::seek(FormulaTarget& sought, double sign, ExtremeSite& site
   const double unbounded = std::numeric_limits<double>::infinity();
   for (long left = spans_left(); !spans_.empty() && spans_.front().bound > wanted() && left > 0; --left) {
     const Span span = pop();
-    // formula without bound here; already recorded
+    // Formula without bound here; already recorded.
     if (span.bound == unbounded && (sign > 0.0 ? sought.high_bound : -sought.low_bound) == unbounded) continue;
     if (curves_.panel(span.panel).half >= 0) {
       push_parts(sought, sign, span);

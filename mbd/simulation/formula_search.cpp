@@ -163,7 +163,7 @@ double FormulaSearch::place_of_peak(MonitoredFormula& sought, Integrator& integr
   const double t0 = integrator.t0(), h = integrator.h(), t1 = integrator.t1();
   if (sought.is_condition()) {
     sought.high = k_half;
-    // already true at the start: the event finder locates its end
+    // Already true at the start: the event finder locates its end.
     if (sought.is_outside(value(sought, sought.operands[0].data(), t0))) return 1.0;
   } else if (!set_band(sought, integrator, dynamics)) {
     return 1.0;
@@ -189,7 +189,7 @@ double FormulaSearch::place_of_peak(MonitoredFormula& sought, Integrator& integr
     const double middle = 0.5 * (span.begin + span.end);
     if (may_be_outside_at(sought, middle, t0 + middle * h)) {
       sought.curves.read(evaluate_dense(middle, integrator, dynamics), operands_.data());
-      // still true at the end: the event finder locates the change
+      // Still true at the end: the event finder locates the change.
       if (sought.is_outside(value(sought, operands_.data(), t0 + middle * h)))
         return ends_outside && range_over(sought, {middle, 1.0}, t0, h).low > k_half ? 1.0 : middle;
     }

@@ -9,7 +9,7 @@ namespace steplap {
 
 namespace {
 
-// smallest displacement, in rounding errors of a coordinate, that counts as motion, however small the body
+// Smallest displacement, in rounding errors of a coordinate, that counts as motion, however small the body.
 constexpr double k_roundings = 64.0;
 constexpr long k_quiet_states = 16; // after this many consecutive recorded states without a new direction the interval is doubled
 constexpr long k_most_stride = 32;  // largest number of steps between recorded states

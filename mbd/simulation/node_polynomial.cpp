@@ -15,7 +15,7 @@ constexpr int k_points = NodePolynomial::k_last + 1;
 // the differences of the coefficients.
 constexpr int k_most_cuts = 24;
 constexpr int k_newton_steps = 4; // Newton iterations for the maximum; from the position of a control point they converge to rounding
-// smallest distance of a division from an end, relative to the part; a nearer one would hardly reduce the larger piece
+// Smallest distance of a division from an end, relative to the part; a nearer one would hardly reduce the larger piece.
 constexpr double k_beside_an_end = 0.02;
 
 using Coefficients = std::array<double, k_points>;

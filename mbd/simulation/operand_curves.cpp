@@ -14,7 +14,7 @@ constexpr int k_last = OperandCurves::k_degree;
 constexpr double k_ulp = 0x1p-52;
 // Relative rounding error of evaluated operands. If an operand has more, its last coefficients show this.
 constexpr double k_floor = 8.0 * k_ulp;
-// rounding error of a polynomial shifted to another point, relative to the sum of its coefficients
+// Rounding error of a polynomial shifted to another point, relative to the sum of its coefficients.
 constexpr double k_shift_rounding = 32.0 * k_ulp;
 constexpr double k_check = 0.6180339887498949; // position of the test point in a panel, far from all nodes
 constexpr double k_safety = 2.0;       // safety factor of the extrapolated error, because coefficients never decrease exactly geometrically

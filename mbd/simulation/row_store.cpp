@@ -58,7 +58,7 @@ double* RowStore::add_row() {
     ++full_;
     tail_.clear();
   }
-  // reserved memory that is never written needs no physical pages, and rows are not moved when others are added
+  // Reserved memory that is never written needs no physical pages, and rows are not moved when others are added.
   if (tail_.empty()) tail_.reserve(full_size);
   const double* before = tail_.data();
   tail_.resize(tail_.size() + width_);

@@ -514,7 +514,7 @@ void RunLeg::finish_extremes() {
 // peak.
 void RunLeg::note_passed(double t0, double t1) {
   if (statistics_.passed_pulse) return;
-  // relative tolerance for times that were meant to be equal
+  // Relative tolerance for times that were meant to be equal.
   constexpr double k_same_time = 64.0 * std::numeric_limits<double>::epsilon();
   const std::vector<double>& times = system_.breakpoints;
   for (auto next = std::lower_bound(times.begin(), times.end(), t0); next != times.end() && next + 1 != times.end() && *(next + 1) < t1;

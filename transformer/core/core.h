@@ -26,7 +26,7 @@ struct Core : TableObject {
   std::vector<double> pressure_shares;                        ///< pressure of each packet, relative to `pressure`; none: all 1
   std::string yoke_steps = "both"; ///< sides on which the yokes of several packets are stepped: "both", "window" or "outside"
   std::vector<Vec2> ducts;         ///< position in the stack and width of each duct, m
-  /// positions of bolt holes from the intersection of the axes of limb and yoke, m: outwards, away from the window
+  /// Positions of bolt holes from the intersection of the axes of limb and yoke, m: outwards, away from the window.
   std::vector<Vec2> bolt_holes;
   std::optional<double> bolt_hole_diameter; ///< diameter of the bolt holes, m
   std::optional<double> mitre_angle;        ///< angle of the mitre relative to the yoke, rad; default: from corner to corner
@@ -35,11 +35,10 @@ struct Core : TableObject {
   // First way to define overlaps: counted and measured.
   std::optional<double> overlap, interfaces; ///< overlap, m; number of interfaces at a corner
   std::string sheet_outlines = "real";       ///< "real", or "strips" with square ends, as in the paper
-  /// dimensions of strips, m: extension of the sheet on both sides of the middle of the mitre; extension of the yoke sheet beyond the limb
-  /// sheet at both ends of the mitre
+  /// Dimensions of strips, m: extension of the sheet on both sides of the middle of the mitre; extension of the yoke sheet beyond the limb
+  /// sheet at both ends of the mitre.
   std::optional<double> tongue, margin;
-  // Second way to define overlaps: by the structure of the stack.
-  /// thickness and pitch, clearance in m; the stacking factor is dimensionless
+  // Second way to define overlaps: by the structure of the stack. Lengths in m.
   std::optional<double> sheet_thickness, stacking_factor, step_pitch, clearance;
   std::optional<long> steps, sheets_per_layer;
   std::string pitch_direction, book; ///< no default, because a wrong value can double the capacity of the joint

@@ -376,7 +376,7 @@ std::vector<Vec2> CoreBuilder::limb_corners(std::size_t i, const CoreGeometry& g
       const CornerFrame corner = corner_frame(mitre, side, level);
       end = {corner.origin, corner.origin + corner.length * corner.along};
     }
-    // corners from left to right at the bottom, back again at the top
+    // Corners from left to right at the bottom, back again at the top.
     std::sort(end.begin(), end.end(), [level](const Vec2& a, const Vec2& b) { return level * a.x() > level * b.x(); });
     corners.insert(corners.end(), end.begin(), end.end());
   }

@@ -20,7 +20,7 @@ namespace steplap {
 namespace {
 
 constexpr double k_usual_notch = 45.0 * std::numbers::pi / 180.0;
-// default dimensions of strips, m; they have an effect only after large slides
+// Default dimensions of strips, m; they have an effect only after large slides.
 constexpr double k_strip_tongue = 0.05, k_strip_margin = 0.02;
 constexpr long k_hole_sides = 24;
 

@@ -18,7 +18,7 @@ namespace steplap {
 struct Lap {
   std::string name; ///< name within its corner: "", "3", "packet 2, 3", "packets 2 and 3, 1"
   Polygon yoke, limb;
-  /// positions of the cuts perpendicular to the mitre, m: the limb sheet is beyond `inner`, the yoke sheet before `outer`
+  /// Positions of the cuts perpendicular to the mitre, m: the limb sheet is beyond `inner`, the yoke sheet before `outer`.
   double inner = 0.0, outer = 0.0;
   double count = 0.0;         ///< number of such interfaces in the stack
   double area = 0.0;          ///< area of one interface, m²
@@ -69,7 +69,7 @@ class CoreGeometry {
 public:
   explicit CoreGeometry(const Core& core);
 
-  /// stack of sheets; for a core with counted overlaps one packet without sheets
+  /// Stack of sheets; for a core with counted overlaps one packet without sheets.
   [[nodiscard]] const Stack& stack() const { return stack_; }
   /// Returns the index of the widest packet with the highest yoke.
   [[nodiscard]] std::size_t largest() const { return largest_; }

@@ -37,7 +37,7 @@ void Conditioner::set_high_pass(const RecordLayout& layout) {
   // The gain of the high-pass is 1/√2 at r⁴ = 1/(√2 − 1). The low-pass is specified by its class: f0 = 2.0775 CFC.
   const double half = *conditioning_.high_pass / std::sqrt(std::sqrt(1.0 / (std::numbers::sqrt2 - 1.0))),
                frequency_class = half / ChannelFilter::k_ratio;
-  // lowest high-pass frequency relative to the sampling rate; the memory of the filter is inversely proportional to this frequency
+  // Lowest high-pass frequency relative to the sampling rate; the memory of the filter is inversely proportional to this frequency.
   constexpr double k_slowest = 1e-5;
   if (!(*conditioning_.high_pass >= k_slowest * rate_))
     throw RecordError(layout.file, 0, 0,

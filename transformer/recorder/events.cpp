@@ -49,7 +49,7 @@ AxisEvent describe_axis(const Window& window, std::size_t axis) {
   return event;
 }
 
-} // discarded in blocks, so that the cost is negligible
+} // namespace
 
 ShockEvent describe_event(const Window& window, std::size_t axes) {
   ShockEvent event;
@@ -89,7 +89,7 @@ void ShockFinder::forget_all_but(std::size_t kept) {
 }
 
 void ShockFinder::put(double t, const double* plain, const double* filtered) {
-  if (!is_inside_ && window_.times.size() >= kept_ + 4096) forget_all_but(kept_); // rarely, so that the cost is negligible
+  if (!is_inside_ && window_.times.size() >= kept_ + 4096) forget_all_but(kept_); // in blocks, so that the cost is negligible
   window_.times.push_back(t);
   bool is_stirred = false;
   for (std::size_t i = 0; i < axes_; ++i) {

@@ -36,7 +36,7 @@ struct AxisEvent {
   double duration = 0.0;              ///< duration of the interval around the peak above a tenth of it, s
   double velocity_change = 0.0;       ///< integral of the acceleration over that interval, m/s
   double frequency = 0.0;             ///< frequency of the swings around the peak, Hz (dominant_frequency.h)
-  /// peak with CFC 60 (up to 100 Hz), m/s²; NaN if the sampling rate is too low
+  /// Peak with CFC 60 (up to 100 Hz), m/s²; NaN if the sampling rate is too low.
   double at_cfc60 = std::numeric_limits<double>::quiet_NaN();
   double at_cfc10 = std::numeric_limits<double>::quiet_NaN(); ///< peak with CFC 10 (up to 17 Hz), m/s²
 };
@@ -76,7 +76,7 @@ private:
   std::array<double, 3> thresholds_{};
   bool is_inside_ = false, is_event_ = false; ///< is_inside_: above the release level; is_event_: also above the threshold
   double last_stir_ = 0.0;
-  /// number of samples of the window that belong to the event; number up to the last one above the release level
+  /// Number of samples of the window that belong to the event; number up to the last one above the release level.
   std::size_t used_ = 0, stirred_ = 0;
   Window window_;
 };

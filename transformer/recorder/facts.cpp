@@ -110,7 +110,7 @@ std::string delimiter_text(char delimiter) {
 } // namespace
 
 std::string impossible_reading(const Recording& recording) {
-  // accelerations beyond this, m/s², are impossible in transport; shocks that destroy a machine have less than a tenth
+  // Accelerations beyond this, m/s², are impossible in transport; shocks that destroy a machine have less than a tenth.
   constexpr double k_beyond_transport = 1000.0 * k_gravity;
   const auto text = [](const std::string& what, double value) { return what + " reads " + in_g(value) + ", which no transport gives."; };
   for (std::size_t i = 0; i < recording.layout.axes.size(); ++i) {

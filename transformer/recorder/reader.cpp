@@ -131,7 +131,7 @@ private:
       note_remark();
       return;
     }
-    // names have no decimal comma, so they do not form pairs
+    // Names have no decimal comma, so they do not form pairs.
     const bool may_name = layout_->shape.joins_pairs && split_fields(text, layout_->shape.delimiter, fields_);
     if (may_name && fields_.size() == layout_->shape.width && is_terminated_ && is_text_line()) return take_text_line();
     if (!layout_->shape.split(text, fields_)) {
@@ -171,7 +171,7 @@ private:
     if (has_previous_ && separator_line_ == 0) separator_line_ = line_;
   }
 
-  // Without times nothing tells how much later the block after a separator begins, unless a separator follows every row or two.
+  // Counts separators as gaps of unknown length if the file has no times, unless a separator follows every row or two.
   void judge_separators() {
     ReadFacts& facts = recording_.facts;
     const bool has_times = layout_->time.kind != TimeKind::none || uses_index_;
@@ -191,8 +191,7 @@ private:
     const std::size_t rows = facts.rows + (waiting_ ? 1 : 0);
     const auto is_known = [&](Remark& each) {
       if (each.text != text) return false;
-      // Counts separators as gaps of unknown length if the file has no times, unless a separator follows every row or two.
-      each.rows = rows;
+      each.rows = rows; // a comment at the end of the file counts as its end
       return true;
     };
     if (std::any_of(facts.remarks.begin(), facts.remarks.end(), is_known)) return;
@@ -274,7 +273,7 @@ private:
       fail(fields_.front(), "This line names other columns than line " + std::to_string(shape.names_line) +
                                 ". Split the file before it, and read the parts one by one.");
     recording_.facts.blocks.note(line_);
-    // full width: names and units are repeated with each block
+    // Full width: names and units are repeated with each block.
     if (is_of_full_width) recording_.facts.last_comment = shown(text_.substr(0, 80));
     else note_remark();
     is_new_block_ = true;

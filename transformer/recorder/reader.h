@@ -42,7 +42,7 @@ struct Counted {
 struct AxisFacts {
   double least = std::numeric_limits<double>::infinity(), greatest = -std::numeric_limits<double>::infinity();
   double rest = 0.0; ///< mean acceleration at rest: over ReadOptions::rest, otherwise over the first second
-  /// length of the longest sequence of equal samples at the minimum or maximum that is entered or left by a jump; indicates clipping
+  /// Length of the longest sequence of equal samples at the minimum or maximum that is entered or left by a jump; indicates clipping.
   std::size_t flat_longest = 0;
   std::size_t flat_line = 0;
   double flat_value = 0.0;

@@ -151,7 +151,7 @@ std::array<double, 3> offset_of(const Recorder& r, const Recording& recording, c
     const auto [k, sign] = axis_of(r, recording.layout, *r.gravity, "gravity");
     offset[k] = sign * k_gravity;
   }
-  constexpr double k_felt = 0.5 * k_gravity; // limit, m/s², beyond which the command `record` rejects events, too
+  constexpr double k_felt = 0.5 * k_gravity; // reading at rest, m/s², above which 'gravity' or 'rest' must be given
   double felt = 0.0;
   for (std::size_t i = 0; i < recording.layout.axes.size(); ++i) felt += direction[i] * recording.facts.axes[i].rest;
   if (!r.gravity && r.rest.empty() && std::abs(felt) > k_felt)

@@ -17,7 +17,7 @@ RecordFolder::RecordFolder(const std::string& folder, bool is_overwriting)
   if (folder_.empty()) folder_ = ".";
   refuse_existing({"record.json", "events.csv"});
   std::error_code error;
-  // parent of the temporary folder: that of the result folder or, if it does not exist yet, the nearest existing one
+  // Parent of the temporary folder: that of the result folder or, if it does not exist yet, the nearest existing one.
   fs::path beside = folder_;
   while (!beside.empty() && !fs::exists(beside, error)) beside = beside.parent_path();
   if (beside.empty()) beside = ".";

@@ -77,7 +77,7 @@ std::string gcdc_epoch() {
 std::string phone() {
   std::string text = "DateTime;Magnitude;X [g];Y [g];Z [g]\r\n";
   add_rows(text, 100.0, [](int i, double, const auto& a) {
-    // time of day: the record lies within one day
+    // Time of day: the record lies within one day.
     const std::string stamp = stamp_text(k_start_ns + std::int64_t{i} * 10'000'000).substr(11, 12);
     const double size = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
     return "04.01.2016 " + with_comma(stamp + printed(";%.4f;%.4f;%.4f;%.4f\r\n", size, a[0], a[1], a[2]));

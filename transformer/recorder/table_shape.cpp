@@ -325,7 +325,7 @@ TableShape find_shape(const std::vector<HeaderLine>& head, const std::string& fi
                                      "CSV; if another sign parts the columns, give --delimiter.");
   shape.first_data = first;
   static_cast<void>(split_fields(head[first].text, shape.delimiter, fields));
-  // omits empty fields after delimiters at the end of rows
+  // Omits empty fields after delimiters at the end of rows.
   while (shape.width > 1 && fields.back().empty()) fields.pop_back(), --shape.width;
   find_names(head, file, shape.width, shape);
   settle_decimal(head, file, options, shape);

@@ -180,11 +180,11 @@ private:
         {1.0, "epoch"}, {1e-3, "\"epoch ms\""}, {1e-6, "\"epoch us\""}, {1e-9, "\"epoch ns\""}};
     for (const auto& [factor, unit] : epochs)
       if (value * factor > 9.4e8 && value * factor < 2.6e9)
-        // suggested for the years 1999 to 2052
+        // Suggested for the years 1999 to 2052.
         return std::string(" Numbers of this size are often times since 1970: that is --time-unit ") + unit + ".";
     return is_size_of_days() ? " Numbers of this size are often the days of a spreadsheet: that is --time-unit days." : "";
   }
-  // corresponds to the years 1954 to 2119
+  // Corresponds to the years 1954 to 2119.
   bool is_size_of_days() const { return numbers_.front() > 20000.0 && numbers_.front() < 80000.0; }
 
   // Returns the unit that the recorder's family uses, or the unit for which the times agree with the sampling rate in the header.
@@ -293,7 +293,7 @@ private:
     const double median = usual[usual.size() / 2];
     if (base_.index_column)
       if (const auto rate = rate_by_index(times)) return rate;
-    // step, relative to the usual one, above which rows are missing; more frequent long steps (share k_rare) are clock jitter
+    // Step, relative to the usual one, above which rows are missing; more frequent long steps (share k_rare) are clock jitter.
     constexpr double k_hole = 1.5, k_rare = 0.1;
     double regular = 0.0, count = 0.0, all = 0.0;
     for (const double step : steps) {

@@ -66,7 +66,7 @@ Point start_on_ray(const ScaledPatch& patch, const Mat3& a, const Vec3& b, const
   const Vec3 n = exit.y, along = inverse.inverse * n;
   const double used = z0.norm() * exit.value; // n·z0 / h(n) > 1
   const double lambda = n.dot(z0) * (1 - 1 / used) / n.dot(along);
-  // starts from the wrench with the smallest utilisation among those that cancel b
+  // Starts from the wrench with the smallest utilisation among those that cancel b.
   Vec3 z = z0.norm() * exit.wrench - lambda * along;
   const Vec3 eta = -lambda * n;
   for (int i = 0; i < 2; ++i)

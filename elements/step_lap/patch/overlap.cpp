@@ -21,7 +21,7 @@ constexpr double k_rounded_place =
 const portable::SinCos& turn_of(double angle) {
   static thread_local double turned = 0.0;
   static thread_local portable::SinCos turn{0.0, 1.0};
-  // bit comparison, because it also distinguishes the sign of zero
+  // Bit comparison, because it also distinguishes the sign of zero.
   if (std::bit_cast<std::uint64_t>(angle) != std::bit_cast<std::uint64_t>(turned)) {
     turn = portable::sin_cos(angle);
     turned = angle;

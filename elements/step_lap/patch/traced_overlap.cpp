@@ -39,7 +39,7 @@ public:
     for (const std::size_t sheet : {0u, 1u})
       for (const Boundary::Span& ring : sheets_[sheet].boundary->rings)
         if (!is_crossed(sheet, ring)) add_whole(sheet, ring, least_area, out);
-    // with the shift a hole may touch several outer rings, so its ring is ambiguous
+    // With the shift a hole may touch several outer rings, so its ring is ambiguous.
     if (is_pushed_ && out.size() > 1 && !w_.holes.empty()) return false;
     while (!w_.holes.empty()) {
       Polygon* around = polygon_around(w_.holes.back().front(), out);
@@ -139,7 +139,7 @@ private:
     order.place.resize(w_.crossings.size());
     for (const Crossing& c : w_.crossings) ++order.start[c.edge[sheet] + 1];
     for (std::size_t i = 1; i < order.start.size(); ++i) order.start[i] += order.start[i - 1];
-    // each start advances to the end of its range while crossings are stored, and is then reset
+    // Each start advances to the end of its range while crossings are stored, and is then reset.
     for (std::size_t c = 0; c < w_.crossings.size(); ++c) order.crossings[order.start[w_.crossings[c].edge[sheet]]++] = c;
     for (std::size_t i = order.start.size() - 1; i > 0; --i) order.start[i] = order.start[i - 1];
     order.start[0] = 0;
