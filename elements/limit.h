@@ -16,7 +16,7 @@ struct Limit : Element {
   std::string coordinate = "angle";   ///< angle, x, y (marker b's axes) or distance
   std::optional<double> lower, upper; ///< stops, measured from the reference pose; for `distance` the distance itself
   double stiffness = 0.0, damping = 0.0;
-  std::optional<double> restitution; ///< replaces damping (restitution.h)
+  std::optional<double> restitution; ///< coefficient of restitution, replaces damping (restitution.h)
 };
 
 [[nodiscard]] const ElementKind& limit_kind();

@@ -28,7 +28,7 @@ struct PolygonContact : Element {
   double stiffness = 0.0;                 ///< force per overlap width and depth, N/m²
   double dissipation = 0.0;               ///< Hunt–Crossley α, s/m
   std::optional<double> static_friction, kinetic_friction;
-  std::string source; ///< origin of these values, quoted in results where the values are unusual
+  std::string source; ///< origin of the values above, quoted in results where the values are unusual
 };
 
 [[nodiscard]] const ElementKind& polygon_contact_kind();

@@ -23,8 +23,8 @@ struct RoundContact : Element {
   std::string a, b = "ground";
   std::string law = "kelvin_voigt";
   double stiffness = 0.0, damping = 0.0;
-  std::optional<double> restitution; ///< replaces damping (restitution.h)
-  double exponent = 1.0;             ///< Hunt–Crossley n
+  std::optional<double> restitution; ///< coefficient of restitution, replaces damping (restitution.h)
+  double exponent = 1.0;             ///< exponent n of the Hunt–Crossley law
   double dissipation = 0.0;          ///< Hunt–Crossley α, s/m
 };
 

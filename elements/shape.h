@@ -34,7 +34,7 @@ struct BodyShape : TableObject {
   std::vector<std::vector<Vec2>> holes; ///< rings of corners, m, in either order
   std::vector<Vec2> hole_centres;       ///< centres of round holes, m
   std::vector<double> hole_diameters;   ///< diameters, m, one for all holes or one for each
-  std::optional<double> density;        ///< kg/m³, requires thickness
+  std::optional<double> density;        ///< density, kg/m³; requires thickness
   std::optional<double> thickness;      ///< thickness, m
   std::optional<double> area_density;   ///< mass per area, kg/m²
   std::optional<double> mass;           ///< mass of the shape without its holes, kg

@@ -19,12 +19,12 @@ struct UnilateralContact : Element {
   std::optional<Vec2> axis; ///< contact axis in marker a's axes; not given: the normal
   double stiffness = 0.0, damping = 0.0;
   std::string law = "kelvin_voigt";
-  std::optional<double> restitution;  ///< replaces damping (restitution.h)
-  double exponent = 1.0;              ///< Hunt–Crossley n
+  std::optional<double> restitution;  ///< coefficient of restitution, replaces damping (restitution.h)
+  double exponent = 1.0;              ///< exponent n of the Hunt–Crossley law
   double dissipation = 0.0;           ///< Hunt–Crossley α, s/m
   std::optional<double> preload;      ///< force in the reference pose, N
-  std::optional<double> interference; ///< −δ in the reference pose, m
-  std::optional<double> gap;          ///< δ in the reference pose, m
+  std::optional<double> interference; ///< penetration −δ in the reference pose, m
+  std::optional<double> gap;          ///< gap δ in the reference pose, m
   std::optional<Vec2> ends;           ///< coordinates of the ends along the face from marker b, m (ended_contact.h)
   long count = 1;
 };

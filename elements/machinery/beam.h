@@ -22,9 +22,9 @@ struct Beam : BodyBuilder {
   std::optional<double> modulus, second_moment, area, density; ///< E, Pa; I, m⁴; A, m²; ρ, kg/m³
   std::optional<double> mass_per_length;                       ///< mass per length, kg/m, including dead load; replaces ρ
   std::string material, profile;                               ///< names such as "steel", "IPE 300"
-  std::optional<double> width, height;                         ///< rectangular section, m
+  std::optional<double> width, height;                         ///< dimensions of a rectangular section, m
   std::optional<double> diameter, wall;                        ///< round section, m: outer diameter, wall thickness
-  std::optional<double> shear_stiffness;                       ///< G A_s, N; not given: no shear deformation
+  std::optional<double> shear_stiffness;                       ///< shear stiffness G A_s, N; not given: no shear deformation
   std::optional<double> damping_time;                          ///< damping time τ, s
   std::optional<double> damping_ratio, damping_frequency;      ///< damping ratio at a frequency in Hz, replaces τ
 

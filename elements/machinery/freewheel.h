@@ -19,7 +19,7 @@ struct Freewheel : Element {
   std::string a, b = "ground";
   std::string free = "counter_clockwise"; ///< direction in which a may overrun b: "counter_clockwise" or "clockwise"
   std::optional<double> holds;            ///< torque at which the lock slips, N m; not given: unbounded
-  double drags = 0.0;                     ///< N m, drag torque while overrunning
+  double drags = 0.0;                     ///< drag torque while overrunning, N m
 };
 
 [[nodiscard]] const ElementKind& freewheel_kind();

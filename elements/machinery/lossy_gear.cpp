@@ -95,7 +95,7 @@ class ToothFriction final : public BoundedFriction {
 public:
   RowSpec row;
   MeshEntry mesh;
-  double loss = 0.0; ///< ν
+  double loss = 0.0; ///< loss factor ν = 1/efficiency − 1
 
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[mesh.a] = is_used[mesh.b] = is_used[mesh.carrier] = 1; }

@@ -50,7 +50,7 @@ public:
   struct ElementData {
     int drum = k_ground;
     std::array<Part, 2> parts;
-    double time = 0.0; ///< τ, s
+    double time = 0.0; ///< time constant τ = c/k of the dampers, s
     /// Friction of the drum and of a belt's other wheel. Wrap angle α = angle + sense·(turned_1 − turned_0), or for a belt π ± 2
     /// atan(c/length).
     std::array<double, 2> friction{0.0, 0.0};
@@ -66,10 +66,10 @@ public:
   template <class S> struct Flow {
     std::array<typename WoundMeasure::Straight<S>, 2> straight;
     std::array<MeasureValue<S>, 2> measured;
-    std::array<S, 2> stretch, rate, resting, tension; ///< e_i, ρ_i, τ_i, T_i
+    std::array<S, 2> stretch, rate, resting, tension; ///< per free part: elongation e_i, rate ρ_i, tension without slip τ_i, tension T_i
     std::array<S, 2> angles;                          ///< wrap angles α of the drum and of a belt's other wheel, rad
-    S ratio{1.0};                                     ///< E
-    S slip{0.0};                                      ///< ṡ
+    S ratio{1.0};                                     ///< bound E of the ratio of the tensions
+    S slip{0.0};                                      ///< slip velocity ṡ, m/s
   };
 
   std::vector<ElementData> entries;

@@ -13,7 +13,7 @@ namespace steplap {
 
 struct Tie : Element {
   std::string a, b = "ground";
-  std::optional<Vec2> axis;     ///< in marker b's axes; not given: point to point
+  std::optional<Vec2> axis;     ///< direction of the tie in marker b's axes; not given: the line between the markers
   double across = 0.0;          ///< distance of its ends across the plane, m
   std::string acts = "tension"; ///< sides on which it acts: "tension", "compression", "both"
   double stiffness = 0.0, damping = 0.0;

@@ -167,7 +167,7 @@ void TyreGroup::add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobia
     const double rate_by_bent = adheres ? -passing : -entry.tread.stiffness / damping;
     const double force_by_bent = adheres ? entry.tread.stiffness - damping * passing : 0.0;
     const RowGradient<D12> g = gradient_of(d.wheel.tread);
-    const D12 rate = d.wheel.tread.rate - d.tread.rate; // ṗ
+    const D12 rate = d.wheel.tread.rate - d.tread.rate; // rate ṗ of the inner state
     InnerJacobian& j = out.emplace_back();
     j.a = entry.a;
     j.b = entry.b;

@@ -17,7 +17,7 @@ namespace steplap {
 /// Motion of a wheel relative to its road.
 template <class S> struct WheelMotion {
   MeasureValue<S> gap;   ///< distance of the centre from the road, m, along the road's normal
-  MeasureValue<S> tread; ///< s, m; its direction is that of the road
+  MeasureValue<S> tread; ///< position s along the road, m, and its direction
   S slip_rate{0.0};      ///< slip velocity v_s, m/s
   S rolling{0.0};        ///< rolling velocity r ω, m/s
 };
@@ -56,10 +56,10 @@ struct WheelMeasure {
 
 /// Parameters of the tread.
 struct TreadLaw {
-  double friction = 0.0;   ///< μ
-  double stiffness = 0.0;  ///< C/σ, N/m
-  double damping = 0.0;    ///< b, N s/m
-  double relaxation = 1.0; ///< σ, m
+  double friction = 0.0;   ///< coefficient of friction μ
+  double stiffness = 0.0;  ///< stiffness C/σ, N/m
+  double damping = 0.0;    ///< damping b, N s/m
+  double relaxation = 1.0; ///< relaxation length σ, m
 
   /// Returns the rolling velocity V up to which the damping b is used, 4 C/b, m/s; above it the damping is 4 C/V.
   [[nodiscard]] double slow() const { return 4.0 * stiffness * relaxation / damping; }

@@ -14,7 +14,7 @@ namespace {
 
 using D12 = Dual<12>;
 
-constexpr int k_direction = 3, k_lost = 6; // indices of these inner states relative to ElementData::inner
+constexpr int k_direction = 3, k_lost = 6; // indices, relative to ElementData::inner: direction of slip (3), 1 once the joint came apart
 constexpr int k_most_returns = 5;          // largest number of iterations; each squares the relative change of the overlap
 constexpr double k_on_surface = 1e-15;     // tolerance of u on the limit surface
 // Limits of the iteration for p at a given direction of slip. The first step leaves a relative error of strain over width of the overlap.

@@ -32,7 +32,7 @@ inline constexpr int k_elastic_parted = 2; ///< position of the first bit for se
 class ElasticGripGroup final : public ForceGroup {
 public:
   struct ElementData {
-    int a = k_ground, b = k_ground;            ///< limb and active part
+    int a = k_ground, b = k_ground;            ///< indices of the limb and of the active part
     const StepLapFriction* friction = nullptr; ///< friction of the joint, owned by the system
     /// Index of the first of seven inner states: p (3), direction of slip (3), and 1 after the joint has come apart.
     int inner = 0;

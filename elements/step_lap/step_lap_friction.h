@@ -111,10 +111,10 @@ public:
     Vec3 rate = Vec3::Zero();
     double speed = 0.0;
     Vec3 direction = Vec3::Zero(); ///< unit direction n
-    double resistance = 1.0;       ///< n·K n + u ∂h/∂p·n
+    double resistance = 1.0;       ///< resistance to the slip n·K n + u ∂h/∂p·n
     double roundness = 1.0;        ///< roundness of the limit surface at n
     // Results of flow_along() for a given direction y:
-    Vec3 turning = Vec3::Zero();  ///< ẏ
+    Vec3 turning = Vec3::Zero();  ///< rate of change ẏ of the direction
     Mat3 turn = Mat3::Zero();     ///< maps a residual wrench to ẏ
     Vec3 by_speed = Vec3::Zero(); ///< residual wrench per unit of speed
     double relaxation = 0.0;      ///< rate at which |y| returns to 1

@@ -13,7 +13,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_projection_tolerance = 1e-12; // m, rad
+constexpr double k_projection_tolerance = 1e-12; // largest remaining constraint error, m, rad
 // Ropes within this distance of their length, relative to the length, take part in an impact even if they do not lengthen before it. A gap
 // of this size is rounding.
 constexpr double k_same_length = 1e-9;

@@ -45,7 +45,7 @@ public:
   [[nodiscard]] bool is_step_withdrawn() const { return is_step_withdrawn_; }
 
   [[nodiscard]] double theta() const { return theta_; }                  ///< θ at which the step ends
-  [[nodiscard]] const std::vector<double>& state() const { return y_; }  ///< packed state there, from dense output, not projected
+  [[nodiscard]] const std::vector<double>& state() const { return y_; }  ///< packed state at theta(), from dense output, not projected
   [[nodiscard]] const std::vector<int>& fired() const { return fired_; } ///< slots that have become negative, ascending
 
 private:
@@ -77,7 +77,7 @@ private:
   struct Interpolant {
     int slot = -1;
     int stalled = 0;
-    std::size_t from = 0, to = 0; ///< nodes between which it has to be positive
+    std::size_t from = 0, to = 0; ///< nodes between which the function has to be positive
     bool has_fired = false;       ///< the function is negative at node to + 1
     PartPolynomial polynomial;
   };
@@ -151,7 +151,7 @@ private:
   bool are_merged_known_ = false;             ///< merged_ is valid for this step
   std::vector<Interpolant> interpolants_;     ///< interpolants of the functions in surveyed_slots_ on the present part
   std::vector<Interval> intervals_;           ///< stack of parts still to be surveyed; the earliest is on top
-  bool is_merged_near_ = false;               ///< a joint inside a cluster may slip in this step, so every sample evaluates these joints
+  bool is_merged_near_ = false;               ///< a joint inside a cluster may slip in this step, so every sample evaluates such joints
   std::vector<char> armed_, armed_before_;    ///< per slot: armed; value at the start of the present interval
   std::vector<int> fired_, fired_before_;
 };

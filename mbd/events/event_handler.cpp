@@ -16,7 +16,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_projection_tolerance = 1e-12; // m, rad
+constexpr double k_projection_tolerance = 1e-12; // largest remaining constraint error, m, rad
 // An ended slip is accepted if settle(), which sets its remaining rate ε to zero, changes velocities by at most this multiple of ε. Two
 // rows can be nearly parallel, such as those of two feet of a slightly tilted box; setting the rates of both to zero then also stops the
 // rotation, which changes velocities by ε divided by the small angle. A larger change is real motion, so the slip has not ended.

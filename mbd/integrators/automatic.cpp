@@ -176,9 +176,8 @@ private:
   double explicit_step_ = 0.0; ///< longest explicit step allowed by stability, s
   double suspicious_share_;
   double mean_share_ = 0.0, mean_step_ = 0.0; ///< averages over explicit steps; mean_step_ in s
-  long steps_explicit_ = 0,
-       /// Explicit steps since the explicit method was resumed; number of them before the next trial.
-      steps_before_trial_ = k_steps_before_trial;
+  /// Number of explicit steps since the explicit method was resumed, and number from which the implicit method may be tried.
+  long steps_explicit_ = 0, steps_before_trial_ = k_steps_before_trial;
   long steps_before_any_ = k_steps_before_any;
   double last_step_ = 0.0;     ///< length of the previous step, s
   double implicit_step_ = 0.0; ///< implicit step length that the explicit method has to compete with, s; 0: unknown

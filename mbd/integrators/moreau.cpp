@@ -67,7 +67,7 @@ private:
   State state_, start_;
   std::vector<double> k_;
   double limit_ = -1.0; ///< limit for which part_ was computed, s
-  double part_ = 0.0;   ///< s
+  double part_ = 0.0;   ///< length of the divided steps up to limit_, s
 };
 
 } // namespace

@@ -93,7 +93,7 @@ private:
   int stride_;
   double settled_[2] = {};
   double power_[2][4] = {}; ///< powers of dissipation and work at 0, the two inner Lobatto points, and 1
-  double power_span_ = 1.0; ///< fraction of the step that these Lobatto points span
+  double power_span_ = 1.0; ///< fraction of the step that the points of power_ span
   Linearization linearization_;
   StageSystem system_of_stages_;
   StepControl control_;
@@ -178,7 +178,7 @@ void Rodas5p::interpolate(double theta, double* out) {
   }
 }
 
-// Returns ∫₀^θ of the cubic with these values at 0, a, 1 − a, 1, by Newton's divided differences.
+// Returns ∫₀^θ of the cubic with the values `power` at 0, a, 1 − a, 1, by Newton's divided differences.
 double Rodas5p::power_integral(double theta, const double* power) {
   const double x[4] = {0.0, k_lobatto[0], k_lobatto[1], 1.0};
   double d[4] = {power[0], power[1], power[2], power[3]};

@@ -29,7 +29,7 @@ constexpr double k_tie = 1e-9; // relative tolerance for equal overloads, far ab
 // Overloads are also equal if they differ by at most this multiple of the last change of the sweeps, to which wrenches are accurate.
 constexpr double k_changes_in_tie = 10.0;
 // Regularisation if not all elements can stick, for example between parts that drives move apart. The wrenches are then those of springs
-// with equal stiffness relative to the mobilities; rounding errors are 1e-10 of them.
+// with equal stiffness relative to the mobilities; their relative rounding errors are about 1e-10.
 constexpr double k_soft = 1e-6;
 // A row is at rest if its velocity is below this fraction of the terms of which it is the sum. Velocities are accurate to 1e-6 at worst.
 constexpr double k_rest_by_others = 1e-6;

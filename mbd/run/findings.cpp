@@ -68,7 +68,7 @@ References references_of(const Model& model) {
       found.signals.insert(name);
       if (const std::size_t point = name.rfind('.'); point != std::string::npos) found.markers.insert(name.substr(0, point));
     }
-  for (const TableEntry& entry : model.tables) // position of a recorder
+  for (const TableEntry& entry : model.tables) // tables can refer to markers, for example to the position of a recorder
     for (const Field& field : entry.kind->fields.fields())
       if (field.type == FieldType::marker) found.markers.insert(std::get<std::string>(field.get(entry.table.get())));
   for (const Marker& marker : model.markers)

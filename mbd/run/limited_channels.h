@@ -17,8 +17,8 @@ namespace steplap {
 struct LimitedChannel {
   std::string criterion;                                    ///< name of the criterion
   std::size_t channel = 0;                                  ///< index in RunResult::ranges
-  double least = -std::numeric_limits<double>::infinity();  ///< in the channel's unit
-  double largest = std::numeric_limits<double>::infinity(); ///< in the channel's unit
+  double least = -std::numeric_limits<double>::infinity();  ///< lower limit, in the channel's unit
+  double largest = std::numeric_limits<double>::infinity(); ///< upper limit, in the channel's unit
 
   /// Returns the distance, in the channel's unit, from the range [low, high] to the nearer limit; negative beyond the limit.
   [[nodiscard]] double reserve(double low, double high) const { return std::min(low - least, largest - high); }

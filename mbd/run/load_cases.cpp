@@ -60,7 +60,7 @@ template <class Work> void for_each_in_parallel(std::size_t count, const Work& w
     if (exception) std::rethrow_exception(exception);
 }
 
-// Criteria of elements come first in a judgement, those of the model last.
+// Returns the limit of each criterion. A judgement lists criteria of elements first, then criteria of the model.
 std::vector<CaseLimit> limits_of(const Report& report, const std::vector<Utilisation>& utilisations) {
   const std::vector<CriterionResult>& criteria = report.judgement.criteria;
   const std::size_t of_elements = criteria.size() - report.run.loaded->model.criteria.size();

@@ -112,7 +112,7 @@ private:
       return "Joint " + quoted(joint->joint) + " slips at " + time(*joint->first_slip) + ".";
     }
     const std::string at = c.t ? " at " + time(*c.t) : "";
-    for (const StoryEntry& entry : overview_.story) // for ties
+    for (const StoryEntry& entry : overview_.story) // reason for a tie: it broke
       if (entry.what == StorySubject::breaks && c.name == c.where && entry.who.front() == c.where)
         return sentence_name(c.where) + " breaks" + at + ".";
     if (c.value && c.limit) {

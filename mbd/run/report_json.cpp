@@ -173,7 +173,7 @@ Json extremes_json(const Report& report, Meanings& meanings) {
     if (range.channel->is_on_request) entry["on_request"] = true;
     if (range.is_low_singular) entry["min_singular"] = true; // the extreme is near a singular position, where reactions may diverge
     if (range.is_high_singular) entry["max_singular"] = true;
-    if (range.had_no_value && range.channel->is_on_request) entry["had_no_value"] = true; // division by zero in a formula
+    if (range.had_no_value && range.channel->is_on_request) entry["had_no_value"] = true; // the formula divided by zero
     const auto add = [&](const char* key, double ChannelError::*which) { add_error(entry, key, report.error_of(range, which)); };
     add("error_min", &ChannelError::low);
     add("error_t_min", &ChannelError::t_low);

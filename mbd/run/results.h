@@ -17,7 +17,7 @@ struct ResultChannel {
 
 /// A row of events.csv.
 struct ResultEvent {
-  double t = 0.0;                   ///< s
+  double t = 0.0;                   ///< time, s
   std::string element;              ///< name of the element
   std::string words;                ///< text of the event as in the file, for display
   EventKind kind = EventKind::none; ///< kind with this text; `none` if this program does not know the text

@@ -29,7 +29,7 @@ Run run_model(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& op
   std::shared_ptr<const LoadedModel> loaded = with_settings(std::move(as_loaded), options);
   SimulationOptions simulation_asked = simulation_options(*loaded, options);
   simulation_asked.notes_motion = options.estimating != Estimating::never; // recorded motion decides whether an equilibrium is stable
-  bool is_over = false; // after a failure result() still samples the last state, and must not be stopped
+  bool is_over = false; // the run has failed; result() then still samples the last state, and must not be stopped
   simulation_asked.progress = [&is_over, &options](double t) {
     if (options.progress) options.progress(t);
     if (!is_over) stop_if_asked(options, t);

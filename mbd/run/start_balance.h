@@ -19,8 +19,8 @@ public:
 
   /// Initial acceleration of a gap or coordinate.
   struct Opening {
-    double acceleration = 0.0; ///< due to all forces, m/s² or rad/s²
-    double by_loads = 0.0;     ///< magnitude due to forces other than contact forces
+    double acceleration = 0.0; ///< acceleration due to all forces, m/s² or rad/s²
+    double by_loads = 0.0;     ///< magnitude of the acceleration due to forces other than contact forces
   };
   /// Returns the opening acceleration of a coordinate with this gradient (three numbers per body without the ground). `own` is the force of
   /// a stop along the coordinate, which is excluded from the loads.
@@ -39,7 +39,7 @@ private:
   Statics statics_;
   VecX scale_, mass_; ///< scales of the coordinates; masses of the scaled coordinates
   MatX free_;         ///< basis of the scaled motions that the joints permit; empty: all motions
-  MatX inverse_;      ///< inverse of the mass matrix of these motions
+  MatX inverse_;      ///< inverse of the mass matrix in the basis free_
   VecX all_, loads_;  ///< accelerations under all forces, and under the forces other than contact forces
   std::vector<PairJacobian> parts_;
 };

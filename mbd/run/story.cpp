@@ -20,8 +20,8 @@ namespace {
 
 struct SubjectText {
   const char* key;     // result of key_of()
-  const char* verb;    // singular
-  const char* several; // plural
+  const char* verb;    // for one subject: "slips"
+  const char* several; // for several subjects: "slip"
 };
 
 const SubjectText& words_of(StorySubject what) {

@@ -18,9 +18,9 @@ namespace steplap {
 
 /// Largest motion or load of an occurrence, SI.
 struct StoryAmount {
-  double value = 0.0;               ///< in `unit`
+  double value = 0.0;               ///< amount, in `unit`
   std::string unit;                 ///< "m", "N", "rad"
-  std::optional<double> error = {}; ///< in `unit`, if estimated
+  std::optional<double> error = {}; ///< error of the value, in `unit`, if estimated
 };
 
 /// Smallest reference length, m. Lengths below 1e-9 of the reference length are rounding, because positions are accurate to 1e-12 m.

@@ -38,7 +38,7 @@ public:
     std::vector<Candidate> candidates;
     for (std::size_t i = 0; i < ties_.size(); ++i)
       if (auto candidate = hung_by(i)) candidates.push_back(std::move(*candidate));
-    for (const Candidate& candidate : candidates) // a hanging load inside a larger one is part of that one
+    for (const Candidate& candidate : candidates) // a load whose carrier belongs to another hanging load is part of that load
       if (std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& c) { return c.is_below[candidate.load.carrier]; }))
         take(candidate);
     return std::move(found_);
@@ -49,7 +49,7 @@ private:
     std::size_t tie = 0;
     std::vector<char> is_below;      ///< per body: belongs to the hanging load
     std::size_t first = 0, last = 0; ///< range of the tie's points that do not belong to the load
-    std::size_t at = 0;              ///< index of the suspension point among these points
+    std::size_t at = 0;              ///< index of the suspension point among the tie's points
     HungLoad load;
   };
 

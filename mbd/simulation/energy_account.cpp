@@ -26,7 +26,7 @@ constexpr double k_floor_rate = 0.06 / k_metre_rate;
 constexpr double k_least_rate = 0.2;
 
 struct Kinetic {
-  double mass = 0.0, px = 0.0, py = 0.0; ///< kg, kg m/s
+  double mass = 0.0, px = 0.0, py = 0.0; ///< mass, kg, and momentum, kg m/s, of all bodies
   double total = 0.0, about_centre = 0.0;
   double of_floor = 0.0; ///< T₀, J: kinetic energy at the velocities below which tolerances are absolute
   double least = 0.0;    ///< smallest scale for the balance of a run, J

@@ -493,7 +493,7 @@ void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
     refine(level, integrator, dynamics);
     if (level == 1)
       for (const int node : {0, k_last}) stored_sample(node);
-    if (wanted > 1 << level) continue; // without these nodes oscillating loads would be missed
+    if (wanted > 1 << level) continue; // the nodes of this level are too few for oscillating loads
     std::erase_if(open_, [&](std::size_t c) { return settle(c, level); });
     check_tops(level, integrator, dynamics);
   }

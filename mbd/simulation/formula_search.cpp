@@ -189,7 +189,7 @@ double FormulaSearch::place_of_peak(MonitoredFormula& sought, Integrator& integr
     const double middle = 0.5 * (span.begin + span.end);
     if (may_be_outside_at(sought, middle, t0 + middle * h)) {
       sought.curves.read(evaluate_dense(middle, integrator, dynamics), operands_.data());
-      // Still true at the end: the event finder locates the change.
+      // If the value stays outside until the end of the interval, the event finder locates the change.
       if (sought.is_outside(value(sought, operands_.data(), t0 + middle * h)))
         return ends_outside && range_over(sought, {middle, 1.0}, t0, h).low > k_half ? 1.0 : middle;
     }

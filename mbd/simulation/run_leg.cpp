@@ -113,7 +113,7 @@ double RunLeg::next_motion_limit() const {
 // Returns the time, s, at which a step of length `step` must end, for methods that average forces over a step. Breakpoints of forces nearer
 // than k_own_step are ignored.
 double RunLeg::next_limit_of_steps(double step) const {
-  constexpr double k_own_step = 1e-4; // relative to a step; far above the tolerance for rounding in time stepping
+  constexpr double k_own_step = 1e-4; // fraction of a step, far above the tolerance for rounding in time stepping
   const auto next = std::upper_bound(system_.breakpoints.begin(), system_.breakpoints.end(), state_.t + k_own_step * step);
   return next == system_.breakpoints.end() ? next_motion_limit() : std::min(*next, next_motion_limit());
 }
@@ -342,7 +342,7 @@ void RunLeg::keep_ties(double t) {
 void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* event_value_before) {
   is_between_events_ = false;
   std::copy(y, y + dynamics_.dimension(), y_.begin());
-  // The factors are computed at this state: with those of a sample, the result of projection would differ within its tolerance.
+  // The factors are computed at this state: with factors from a sample, the result of projection would differ within its tolerance.
   (void)dynamics_.residual(t, y_.data());
   dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
   energy_.check_step(dynamics_, t, y_.data());

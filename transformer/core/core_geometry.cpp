@@ -59,7 +59,7 @@ struct Moments {
 
 struct CoreGeometry::End {
   bool is_middle = false;
-  double side = 1.0, level = 1.0, reach = 0.0; ///< side: for a middle limb, the side of its axis
+  double side = 1.0, level = 1.0, reach = 0.0; ///< signs of the end; for a middle limb `side` is the side of its axis
 };
 
 Stack stack_of(const Core& core) {
@@ -141,7 +141,7 @@ CornerFrame CoreGeometry::frame(std::size_t packet, const End& end) const {
   return end.is_middle ? notch_frame(m, -end.side, end.level) : corner_frame(m, end.side, end.level);
 }
 
-// Returns the sheet without its bolt holes.
+// Cuts the bolt holes out of the outline of a sheet. `levels`: ends at which the sheet has holes, +1 top, −1 bottom.
 Polygon CoreGeometry::punched(const std::vector<Vec2>& ring, double side, std::initializer_list<double> levels) const {
   Polygon sheet{ring, {}};
   if (core_.bolt_holes.empty() || ring.size() < 3) return sheet;

@@ -27,7 +27,7 @@ struct Lap {
   bool is_between = false;    ///< the layers belong to two packets
   std::size_t zone = 0;       ///< zone in a stack by place (stack.h)
   double before = 0.0;        ///< in a stack by place: mean number of sheets in front of the interface
-  long first = 0, last = 0;   ///< numbers of sheets in front of the first and the last of these interfaces
+  long first = 0, last = 0;   ///< numbers of sheets in front of the first and of the last interface
   Vec2 middle = Vec2::Zero(); ///< centroid of the overlap, m
   std::vector<Vec2> overlap;  ///< vertices of the overlap, m
 };

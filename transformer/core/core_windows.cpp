@@ -10,7 +10,7 @@ namespace steplap {
 
 namespace {
 
-// A limb relative to the active part's centre of gravity, in its axes, m. Heights are those of the adjacent window.
+// A limb relative to the active part's centre of gravity, in its axes, m. `low` and `high` are the bottom and top of the adjacent window.
 struct Standing {
   double x, half_width, low, high;
 };

@@ -24,7 +24,7 @@ public:
   explicit Merger(const Polygon& polygon) {
     add_ring(polygon.outer);
     for (const Ring& hole : polygon.holes) add_ring(hole);
-    std::map<std::array<std::size_t, 2>, std::size_t> waiting; // halves without twin so far, by their end points
+    std::map<std::array<std::size_t, 2>, std::size_t> waiting; // halves whose twin is not found yet, by start and end vertex
     for (const auto& t : triangulated(polygon))
       for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t h = halves_.size(), first = h - i;

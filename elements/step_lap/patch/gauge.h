@@ -13,8 +13,8 @@ namespace steplap {
 /// Solution of the problem.
 struct Gauge {
   double value = 0;           ///< max y·w/h
-  Vec3 y = Vec3::Zero();      ///< maximiser
-  Vec3 wrench = Vec3::Zero(); ///< h∇h
+  Vec3 y = Vec3::Zero();      ///< vector at which the maximum is reached
+  Vec3 wrench = Vec3::Zero(); ///< h∇h at y: the wrench with the smallest utilisation
   int evaluations = 0;
   double residual = 0; ///< |h∇h − w| on the subspace; the error of `value` is of the order of its square
   bool converged = false;

@@ -55,7 +55,7 @@ public:
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
   [[nodiscard]] const PatchEdge* edges(const Piece& p) const { return edges_.data() + p.first_edge; }
 
-  [[nodiscard]] double area() const { return area_; }              ///< [m²]
+  [[nodiscard]] double area() const { return area_; }              ///< total area of the pieces [m²]
   [[nodiscard]] double force() const { return force_; }            ///< ∬ w dA [N]: capacity in translation
   [[nodiscard]] Vec2 centroid() const { return moment_ / force_; } ///< centroid of the traction [m]
   /// Returns the radius of gyration of the traction about centroid() [m].
