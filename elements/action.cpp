@@ -17,7 +17,7 @@ namespace steplap {
 
 namespace {
 
-// Returns true for fields that an action may set by value rather than by name.
+// Returns true for fields that an action may set to a value; other fields take a name.
 bool is_number_or_list(const Field& field) {
   return field.type == FieldType::number || field.type == FieldType::vec2 || field.type == FieldType::numbers ||
          field.type == FieldType::points;
@@ -39,7 +39,7 @@ public:
     entry.is_once = action_.once;
     entry.is_armed = action_.armed;
     if (action_.steps.empty()) builder_.error("'do' is empty: say what happens, as \"release hook\" or \"stop\"");
-    std::vector<std::string> targets; // for release and hold
+    std::vector<std::string> targets; // names after the verb: elements for release and hold, actions for arm and disarm
     for (const std::string& text : action_.steps) {
       try {
         const ActionStepText step = action_step(text);
@@ -123,8 +123,8 @@ private:
     if (field->type != FieldType::number) try_out(step, *field);
   }
 
-  // Checks a list that the element itself validates, for example ascending points, when the model is compiled and not only when the action
-  // is executed.
+  // Checks a new list already when the model is compiled if the element itself validates it (for example ascending points), not only when
+  // the action is executed.
   void try_out(const ActionStep& step, const Field& field) const {
     Model trial = model();
     ElementEntry& entry = trial.elements[static_cast<std::size_t>(step.target)];
@@ -175,7 +175,7 @@ private:
   }
 
   [[nodiscard]] static double number(const ActionStepText& text, const Field& field, const std::string& unit) {
-    double plain = 0.0; // SI, like a number in a file
+    double plain = 0.0; // number in SI units, like one without unit in a file
     const char *const begin = text.value.data(), *const end = begin + text.value.size();
     if (const auto read = std::from_chars(begin, end, plain); read.ec == std::errc() && read.ptr == end) return checked(plain, text, field);
     const Quantity quantity = parse_quantity(text.value, unit);
@@ -264,7 +264,7 @@ void compile_action(const Element& element, SystemBuilder& builder) {
   if (switch_count > 0) builder.add_unit(group, switch_count);
 }
 
-// Kind of the element made from the table; elements in files cannot have this kind.
+// Returns the kind of the element that is made from the table; elements in files cannot have this kind.
 const ElementKind& compiled_kind() {
   static const ElementKind kind = [] {
     ElementKind k;

@@ -1,7 +1,7 @@
-// Derivatives of the forces on several bodies by the motions of all of them, from dual numbers.
+// Derivatives of the forces on several bodies with respect to the motions of all of them, from dual numbers.
 //
-// A law of up to N bodies is evaluated with Dual<6 N>: derivatives by the pose of body j have indices 3 j …, those by its velocity 3 N + 3
-// j …. If a body occurs several times, its contributions add up.
+// A law of up to N bodies is evaluated with Dual<6 N>: derivatives with respect to the pose of body j have indices 3 j …, those with
+// respect to its velocity 3 N + 3 j …. If a body occurs several times, its contributions add up.
 #pragma once
 
 #include "mbd/base/dual.h"
@@ -14,7 +14,7 @@
 
 namespace steplap {
 
-/// Appends the derivatives of the force on each body by the motion of each body.
+/// Appends the derivatives of the force on each body with respect to the motion of each body.
 template <int N>
 void add_body_blocks(const std::array<int, N>& bodies, const std::array<BodyForceOf<Dual<6 * N>>, N>& forces,
                      std::vector<PairJacobian>& out) {
@@ -38,7 +38,7 @@ void add_body_blocks(const std::array<int, N>& bodies, const std::array<BodyForc
     }
 }
 
-/// Appends the derivatives of the rate of inner state `inner` by the motion of each body.
+/// Appends the derivatives of the rate of inner state `inner` with respect to the motion of each body.
 template <int N> void add_rate_by_motion(int inner, const std::array<int, N>& bodies, const Dual<6 * N>& rate, StateJacobian& out) {
   for (int j = 0; j < N; ++j)
     if (bodies[static_cast<std::size_t>(j)] != k_ground)

@@ -33,9 +33,9 @@ namespace steplap {
 struct KelvinVoigtContact {
   static constexpr int k_event_count = 2;
   static constexpr bool k_is_contact = true;
-  double k = 0.0, c = 0.0, offset = 0.0; ///< N/m, N s/m, m
+  double k = 0.0, c = 0.0, offset = 0.0; ///< stiffness, N/m; damping, N s/m; offset of the gap, m
 
-  /// −kδ − cδ̇, the force without the max().
+  /// Returns −kδ − cδ̇, N, the force without the max().
   template <class S> [[nodiscard]] S unclamped_force(const S& value, const S& rate) const {
     return S(-k) * (value - S(offset)) - S(c) * rate;
   }
@@ -53,7 +53,7 @@ struct KelvinVoigtContact {
     if (value - offset >= 0.0) return k_contact_open;
     return unclamped_force(value, rate) >= 0.0 ? k_contact_pressed : k_contact_released;
   }
-  /// open: δ. pressed: −kδ − cδ̇. released: −δ, at which it opens, and kδ + cδ̇, at which the force returns.
+  /// Event functions. open: δ. pressed: −kδ − cδ̇. released: −δ (zero when the contact opens) and kδ + cδ̇ (zero when the force returns).
   template <class S> void event_value(const S& value, const S& rate, UnitMode mode, S* event_value, S* event_derivative) const {
     const S gap = value - offset;
     if (mode == k_contact_open) {
@@ -70,8 +70,8 @@ struct KelvinVoigtContact {
       event_value[1] = -unclamped_force(value, rate);
     }
   }
-  /// Mode after event function `slot` has become negative. A closing contact is pressed if δ̇ ≤ 0, whatever the sign of −kδ − cδ̇: δ is
-  /// zero up to rounding there, so for c = 0 the sign of the force is rounding too.
+  /// Returns the mode after event function `slot` has become negative. A closing contact is pressed if δ̇ ≤ 0, whatever the sign of −kδ −
+  /// cδ̇: δ is zero up to rounding there, so for c = 0 the sign of the force is rounding, too.
   [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate, double rounding) const {
     const bool is_closed = penetrates_beyond_rounding(value, rounding);
     if (mode == k_contact_open) {
@@ -81,7 +81,7 @@ struct KelvinVoigtContact {
     if (mode == k_contact_pressed) return is_closed && c * rate > k * rounding ? k_contact_released : k_contact_open;
     return slot == 0 ? k_contact_open : k_contact_pressed;
   }
-  /// True only for −δ of a contact that has just been released. Every other event function starts at zero up to rounding.
+  /// Returns true only for −δ of a contact that has just been released. Every other event function starts at zero up to rounding.
   [[nodiscard]] bool is_armed_at_entry(UnitMode mode, int slot, double value, double rounding) const {
     return mode == k_contact_released && slot == 0 && penetrates_beyond_rounding(value, rounding);
   }
@@ -97,7 +97,7 @@ struct KelvinVoigtContact {
 struct AdhesiveKelvinVoigtContact {
   static constexpr int k_event_count = 1;
   static constexpr bool k_is_contact = true;
-  double k = 0.0, c = 0.0, offset = 0.0; ///< N/m, N s/m, m
+  double k = 0.0, c = 0.0, offset = 0.0; ///< stiffness, N/m; damping, N s/m; offset of the gap, m
 
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     return mode == k_contact_pressed ? S(-k) * (value - S(offset)) - S(c) * rate : S(0);
@@ -110,7 +110,7 @@ struct AdhesiveKelvinVoigtContact {
     return 0.5 * k * closed * closed;
   }
   [[nodiscard]] UnitMode initial_mode(double value, double) const { return value - offset < 0.0 ? k_contact_pressed : k_contact_open; }
-  /// open: δ. pressed: −δ.
+  /// Event functions. open: δ. pressed: −δ.
   template <class S> void event_value(const S& value, const S& rate, UnitMode mode, S* event_value, S* event_derivative) const {
     const double sign = mode == k_contact_open ? 1.0 : -1.0;
     event_value[0] = sign * (value - offset);
@@ -130,7 +130,7 @@ struct AdhesiveKelvinVoigtContact {
 struct HuntCrossleyContact {
   static constexpr int k_event_count = 2;
   static constexpr bool k_is_contact = true;
-  double k = 0.0, exponent = 1.5, alpha = 0.0, offset = 0.0; ///< k in N/mⁿ, n, α in s/m, m
+  double k = 0.0, exponent = 1.5, alpha = 0.0, offset = 0.0; ///< k in N/mⁿ; n; α in s/m; offset of the gap, m
 
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     if (mode != k_contact_pressed) return S(0);
@@ -144,7 +144,7 @@ struct HuntCrossleyContact {
     if (value - offset >= 0.0) return k_contact_open;
     return alpha * rate <= 1.0 ? k_contact_pressed : k_contact_released;
   }
-  /// open: δ. pressed: −δ and 1 − αδ̇. released: −δ and αδ̇ − 1.
+  /// Event functions. open: δ. pressed: −δ and 1 − αδ̇. released: −δ and αδ̇ − 1.
   void event_value(double value, double rate, UnitMode mode, double* event_value, double* event_derivative) const {
     const double sign = mode == k_contact_open ? 1.0 : -1.0;
     event_value[0] = sign * (value - offset);
@@ -159,7 +159,7 @@ struct HuntCrossleyContact {
   static EventKind event_kind(UnitMode from, UnitMode to) { return KelvinVoigtContact::event_kind(from, to); }
 
 private:
-  /// depthⁿ, continued as an odd function.
+  /// Returns depthⁿ, continued as an odd function.
   template <class S> [[nodiscard]] S power(const S& depth) const {
     using portable::pow;
     if (exponent == 1.0) return depth;

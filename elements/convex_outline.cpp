@@ -13,7 +13,8 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_straight = 1e-9; // sine of the angle below which an edge is straight, given the digits of typed coordinates
+// Sine of the largest angle of a corner that counts as straight, for typed coordinates with few digits.
+constexpr double k_straight = 1e-9;
 
 std::string place_text(const Vec2& p) {
   char text[64];
@@ -27,7 +28,7 @@ double twice_area(const std::vector<Vec2>& ring) {
   return sum;
 }
 
-// Returns the corners without repeated ones and those on straight edges.
+// Returns the corners without repeated ones and those on straight edges. `size`: extent of the ring, m.
 std::vector<Vec2> true_corners(const std::vector<Vec2>& ring, double size) {
   std::vector<Vec2> apart;
   for (const Vec2& p : ring)

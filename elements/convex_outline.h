@@ -11,7 +11,7 @@ namespace steplap {
 class SystemBuilder;
 struct CompiledMarker;
 
-/// Error in an outline. The message continues a sentence that begins with its name.
+/// Error in an outline. The message is the rest of a sentence that begins with the name of the outline.
 struct OutlineError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -13,26 +13,26 @@ namespace steplap {
 
 class CoulombFriction : public BoundedFriction {
 public:
-  // Dead band of the change of foot, rad. Level feet are the normal state at rest, and rounding must not change the foot.
+  // Dead band for the change between feet, rad. At rest the feet are normally level, so rounding would change the foot.
   static constexpr double k_foot_dead_band = 1e-13;
-  // Acceleration, m/s², relative to which errors of friction are judged: that of a motion at the absolute part of the tolerances.
+  // Acceleration, m/s², that an error of friction may cause: that of a motion at the velocities below which tolerances are absolute.
   static constexpr double k_floor_acceleration = 3.6;
 
   std::vector<ContactIndex> contacts;
-  std::vector<RowSpec> feet; ///< rows at the rear-most and the front-most contact point; both the same for a single contact
+  std::vector<RowSpec> feet; ///< rows at the rear-most and the front-most contact point; equal for a single contact
   bool has_two_feet = false;
   double level = 0.0; ///< θ_A − θ_B at which both feet touch, rad
   double mu_static = 0.0, mu_kinetic = 0.0;
-  bool may_pull = false;                         ///< a contact may pull (law `literal`); friction ends where the sum of normal forces
-                                                 ///< becomes zero
-  double damping = 0.0, mass = 0.0, lever = 0.0; ///< of the contacts, N s/m; of the lighter body, kg; distance from its centre, m
+  bool may_pull = false; ///< a contact may pull (law `literal`); friction ends where the sum of normal forces becomes zero
+  /// Damping of the contacts, N s/m; mass of the lighter body, kg; distance of the contact from its centre of gravity, m.
+  double damping = 0.0, mass = 0.0, lever = 0.0;
 
   [[nodiscard]] const RowSpec* rows(const FrictionState& state) const override { return &feet[state.foot]; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[feet[0].a] = is_used[feet[0].b] = 1; }
   template <class S> [[nodiscard]] S normal_force(const EvaluationData<S>& e) const { return greatest_of(S(0.0), sum_of_forces(e)); }
-  /// Returns N, continued to negative values, as for laws of motion: a step may continue slightly beyond the end of a contact force before
-  /// this is detected, and a kink there would make the step as inaccurate as the time of its end. Not continued for friction above 1, which
-  /// would amplify a force that is negative by rounding.
+  /// Returns N, continued to negative values like a force law: a step may extend slightly beyond the end of a contact force before this is
+  /// detected, and a kink there would make the step as inaccurate as the time of its end. Not continued for friction above 1, which would
+  /// amplify a force that is negative by rounding.
   template <class S> [[nodiscard]] S smooth_normal_force(const EvaluationData<S>& e) const {
     return may_pull || mu_static > 1.0 ? normal_force(e) : sum_of_forces(e);
   }
@@ -65,17 +65,18 @@ public:
     return turn_to_other_foot(e, state);
   }
   void switch_contact_point(const Evaluation&, FrictionState& state) const override { state.foot = state.foot == 0 ? 1 : 0; }
-  // The slip rates of two feet differ by the relative angular velocity times the height of one above the other along the normal of the line.
-  // Feet on one line are level when the foot changes, so slip rate and force are continuous; only the acceleration of the slip jumps, by the
-  // distance of the feet times the square of the angular velocity. The integration is restarted there, but no event is listed.
+  // The slip rates of two feet differ by the relative angular velocity times their difference in height along the normal of the line. Feet
+  // on one line are level when the foot changes, so slip rate and force are continuous; only the slip acceleration jumps, by the distance
+  // of the feet times the square of the angular velocity. The integration is restarted there, but no event is reported.
   [[nodiscard]] EventKind contact_switch_event(const FrictionState&, const FrictionState&) const override {
-    constexpr double k_level_feet = 1e-12; // share of the distance from the centre; of coordinates in the file
+    // Tolerance of equal heights relative to the distance from the centre: rounding of coordinates in the file.
+    constexpr double k_level_feet = 1e-12;
     const double height = feet[1].direction.dot(feet[1].point_b - feet[0].point_b);
     return has_two_feet && std::abs(height) <= k_level_feet * lever ? EventKind::none : EventKind::changes_foot;
   }
-  // Contact dampers convert velocity errors to normal force errors, and friction with μ > 1 amplifies them. Velocities must then be
-  // accurate enough for the resulting acceleration to be small compared with k_floor_acceleration. Otherwise the contact chatters: errors
-  // alone would remove and restore a normal force below the tolerance, whose friction still moves the body.
+  // A contact damper converts velocity errors to normal force errors, and friction with μ > 1 amplifies them. The required accuracy of
+  // velocities therefore limits the resulting acceleration to k_floor_acceleration. Otherwise the contact chatters: errors alone remove and
+  // restore a normal force below the tolerance, whose friction still moves the body.
   [[nodiscard]] bool depends_on_slip_direction(const FrictionState&) const override { return mu_kinetic > 1.0 && damping > 0.0; }
   [[nodiscard]] SlipScale slip_scale(const Evaluation&, const FrictionState&, const double*) const override {
     SlipScale scale;

@@ -16,7 +16,7 @@ namespace steplap {
 
 namespace {
 
-// Dead band, m, within which a circle that leaves a segment's side for its end stays at the side.
+// Dead band, m, for the change of the contact point from the side of a segment to its end.
 constexpr double k_end_dead_band = 1e-13;
 // Friction of a segment's contact: one contact point for each side and each end (SegmentPart).
 class SegmentFriction final : public CoulombFriction {
@@ -24,14 +24,14 @@ public:
   SegmentMeasure segment;
 
   [[nodiscard]] bool record_friction(TracedEvaluation&, const FrictionState&, const TapeNumber*, TapeNumber*, TapeNumber*) const override {
-    return false; // the contact point depends on comparisons
+    return false; // not traceable: the choice of the contact point depends on comparisons
   }
   [[nodiscard]] double contact_point_event(const Evaluation& e, const FrictionState& state) const override {
     const Pair<double> p = segment.place(e.motion[feet[0].a], e.motion[feet[0].b]);
     const auto part = static_cast<SegmentPart>(state.foot);
     if (part == SegmentPart::from) return k_end_dead_band - p.x;
     if (part == SegmentPart::to) return k_end_dead_band + p.x - segment.length;
-    if ((part == SegmentPart::right) != (p.y < 0.0)) return -1.0; // switches only after the contact has been open
+    if ((part == SegmentPart::right) != (p.y < 0.0)) return -1.0; // the side can change only after the contact has been open
     return k_end_dead_band + std::min(p.x, segment.length - p.x);
   }
   void switch_contact_point(const Evaluation& e, FrictionState& state) const override {
@@ -54,7 +54,7 @@ RowSpec slide_row(const ContactGeometry& g, int base) {
   return row;
 }
 
-// Reports a contact that is in two friction elements, because its normal force would count twice.
+// Reports a contact that belongs to two friction elements, which would use its normal force twice.
 bool is_claimed(const CoulombStick& e, SystemBuilder& builder) {
   const auto refuse = [&builder](const std::string& contact, const std::string& where) {
     builder.error("'" + contact + "' stands in 'contacts' " + where + ": its normal force would be used for friction twice");
@@ -119,7 +119,7 @@ void add_channels(SystemBuilder& builder, const CoulombFriction& friction) {
                       [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
 }
 
-// Adds the channel of the slid distance since the reference pose.
+// Adds the channel of the slid distance from the reference pose.
 void add_slide_channel(SystemBuilder& builder, const char* name, const char* doc, const CoulombFriction& friction, std::size_t place) {
   const double start = evaluate_row<false>(friction.feet[place], &builder.reference(0)).value;
   builder.add_channel(name, "m", {doc, "along b's tangent"}, [&friction, place, start](const Snapshot& s) {
@@ -150,7 +150,7 @@ void compile_rolling(const CoulombStick& e, SystemBuilder& builder) {
   if (e.contacts.size() > 1)
     return builder.error("a circle's contact cannot share its friction with others: give each its own coulomb_stick");
   const ContactIndex* index = builder.contact(e.contacts.front());
-  if (!index) return; // the contact's own error is reported
+  if (!index) return; // the contact reports its own error
   const Element& contact = *builder.element(e.contacts.front())->element;
   std::vector<RowSpec> rows = rolling_rows(contact, builder);
   const int base = builder.add_base();
@@ -177,10 +177,10 @@ double lighter_mass(const ContactGeometry& g, const SystemBuilder& builder) {
 }
 
 // Returns the angle φ = θ_A − θ_B at which both feet touch. Let d be the vector from the rear to the front foot in a's axes, t and n the
-// line's tangent and normal in b's. Then gap_front − gap_rear = n·R(φ) d − h = |d| sin(φ + β) − h, with tan β = n·d/t·d, and h the height
-// of b's line at the front foot above that at the rear foot. Front and rear are distinguished in the reference pose, so φ is the solution
-// within a right angle of it. |φ| < 0.01 rad counts as zero: it results from preloads and rounded coordinates of feet that are meant to be
-// level.
+// line's tangent and normal in b's axes. Then gap_front − gap_rear = n·R(φ) d − h = |d| sin(φ + β) − h, with tan β = n·d/t·d, and h the
+// height of b's line at the front foot above that at the rear foot. Front and rear are those of the reference pose, so φ is the solution
+// within a right angle of that pose. |φ| < 0.01 rad counts as zero: such angles result from preloads and rounded coordinates of feet that
+// are meant to be level.
 double level_angle(const ContactGeometry& rear, const ContactGeometry& front, const SystemBuilder& builder) {
   constexpr double k_meant_level = 0.01, k_whole_turn = 6.283185307179586;
   const Vec2 n = front.gap.normal, t(n.y(), -n.x()), d = front.gap.point_a - rear.gap.point_a;
@@ -242,7 +242,7 @@ const ElementKind& coulomb_stick_kind() {
         .doc("where the coefficients come from: above 0.8 results name it, from 1.2 on no verdict is hold without it");
     k.holds<T>();
     k.compile = compile_coulomb;
-    k.friction = [](const Element& element) { // the kinetic coefficient is not larger
+    k.friction = [](const Element& element) { // the static coefficient, since the kinetic one is not larger
       const auto& e = static_cast<const T&>(element);
       return GivenFriction{"static_friction", e.static_friction, e.source};
     };

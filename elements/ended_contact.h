@@ -1,9 +1,9 @@
 // A unilateral contact whose face has ends: a foot beyond an end is not supported.
 //
-// Modes: those of its law (contact_laws.h), and off: behind the line of the face, but past an end, or come from there. When a pressed foot
-// passes an end the mode becomes off, the force vanishes at once, and its elastic energy ½ k δ² is counted as dissipated. No energy is
-// created: a foot that is off is supported again only after it has risen above the line. The sides of the face do not exist; use
-// polygon_contact for a part that has sides.
+// Modes: those of its law (contact_laws.h), and `off`: behind the line of the face and not supported, because the foot is past an end, or
+// came from there. When a pressed foot passes an end the mode becomes off, the force vanishes at once, and its elastic energy ½ k δ² is
+// counted as dissipated. No energy is created: a foot that is off is supported again only after it has risen above the line. The face has
+// no sides; use polygon_contact for a part that has sides.
 #pragma once
 
 #include "elements/contact_laws.h"
@@ -21,12 +21,12 @@ public:
     GapMeasure gap;
     Law law;
     double low = 0.0, high = 0.0; ///< range of the coordinate along the face, from point_b, m
-    int inner = 0;                ///< inner state: 1 while off
+    int inner = 0;                ///< index of the inner state that is 1 while the mode is off
     int link = 0, unit = 0, first_event = 0, contact = 0;
 
     [[nodiscard]] SlideMeasure slide() const { return {gap.point_a, gap.point_b, gap.normal, gap.axis, gap.is_axis_in_a}; }
     [[nodiscard]] bool is_on_face(double along) const { return along >= low && along <= high; }
-    /// Returns the state of a foot that has not been supported before.
+    /// Returns true if a foot that has not been supported before is behind the line and past an end.
     [[nodiscard]] bool is_off_at(const Motion<double>& at_a, const Motion<double>& at_b) const {
       return gap.at<false, double>(at_a, at_b).value < law.offset && !is_on_face(slide().template at<false, double>(at_a, at_b).value);
     }
@@ -51,7 +51,7 @@ public:
     const ElementData& entry = entries[element];
     const bool was_carried = inner[entry.inner] == 0.0;
     inner[entry.inner] = to == k_contact_off ? 1.0 : 0.0;
-    // A foot that comes from the open side has no elastic energy.
+    // Only a foot that was pressed has elastic energy.
     return to == k_contact_off && was_carried ? entry.law.energy(gap(entry, e.motion).value) : 0.0;
   }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {

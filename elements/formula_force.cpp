@@ -12,7 +12,7 @@ namespace {
 
 using D12 = Dual<12>;
 
-/// Measure along an axis fixed in a, at a's marker. It is not the gradient of a coordinate, so it has a rate but no value.
+/// Measure along an axis fixed in a, through a's marker. It has a rate but no value, because it is not the rate of any coordinate.
 struct FollowingMeasure {
   Vec2 point_a, axis;
   template <class S, class B> [[nodiscard]] MeasureValue<S> at(const Motion<S>& a, const B& b) const {
@@ -34,14 +34,14 @@ private:
 
 struct ForceEntry {
   int a, b;
-  RowSpec row; ///< its coordinate; if it follows a, point_a and direction are in a's frame
+  RowSpec row; ///< row of the coordinate; for own_x and own_y, point_a and direction are in a's frame
   bool is_following = false;
   MotionFormula formula;
-  double zero = 0.0; ///< for an angle: that of the markers
+  double zero = 0.0; ///< for an angle: relative angle of the markers in their bodies, rad
   std::vector<SwitchScale> switches = {};
   int link = 0;
-  int unit = -1;       ///< index of its mode; −1: the formula has no switches
-  int first_event = 0; ///< index of its first event function
+  int unit = -1;       ///< index of the unit whose mode contains the switches; −1: the formula has no switches
+  int first_event = 0; ///< index of the unit's first event function
 
   template <class S, class B> [[nodiscard]] STEPLAP_INLINE MeasureValue<S> measure(const Motion<S>& m, const B& of_b) const {
     if (is_following) return FollowingMeasure{row.point_a, row.direction}.at(m, of_b);
@@ -52,12 +52,13 @@ struct ForceEntry {
   template <class S> [[nodiscard]] SwitchBits bits(const EvaluationData<S>& e) const { return unit < 0 ? 0 : e.mode[unit]; }
 };
 
-/// Derivatives of the forces on a and b by the motions of other bodies.
+/// Collects the derivatives of the forces on a and b with respect to the motions of other bodies.
 class SharesOfBodies {
 public:
   SharesOfBodies(const ForceEntry& entry, std::vector<PairJacobian>& out) : entry_(entry), out_(out), first_(out.size()) {}
 
-  /// Adds the derivative for an operand with `share`; `along` is the wrench on a and b per unit value.
+  /// Adds the derivative with respect to an operand, to which body `share.body` contributes. `along`: wrenches on a and b per unit force;
+  /// `slope`: derivative of the force.
   void add(const Vec3 (&along)[2], double slope, const MotionShare& share) {
     if (share.body == k_ground) return;
     const int ends[2] = {entry_.a, entry_.b};
@@ -87,7 +88,7 @@ private:
   std::size_t first_;
 };
 
-/// `Works`: counted as work, otherwise as heat. `Jumps`: a formula contains comparisons, so its force may jump.
+/// `Works`: the power is counted as work, otherwise as heat. `Jumps`: a formula contains comparisons, so its force may jump.
 template <bool Works, bool Jumps> class FormulaForceGroup final : public ForceGroup {
 public:
   using ElementData = ForceEntry;
@@ -104,7 +105,7 @@ public:
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
     for (const ElementData& entry : entries) {
       const Gradient g(entry, e);
-      PairJacobian& turning = out.emplace_back(); // derivative of direction and levers at constant value
+      PairJacobian& turning = out.emplace_back(); // change of direction and levers at constant force
       turning.a = entry.a;
       turning.b = entry.b;
       for (int i = 0; i < 6; ++i) {
@@ -160,7 +161,8 @@ public:
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     return next_bits(entries[element].formula, mode, slot, e, entries[element].own_now(e));
   }
-  [[nodiscard]] bool has_discontinuous_events() const override { return true; } // signals may jump, even if the formula does not
+  // Includes formulas without switches, because signals may jump.
+  [[nodiscard]] bool has_discontinuous_events() const override { return true; }
   [[nodiscard]] EventTolerance event_tolerance(int) const override { return Jumps ? EventTolerance::none : EventTolerance::velocity; }
   [[nodiscard]] EventKind event_kind(UnitMode, UnitMode) const override { return EventKind::passes_kink; }
 
@@ -174,9 +176,9 @@ private:
   struct Gradient {
     OwnCoordinate<D12> own;
     D12 along[6];    ///< wrench on a and on b for unit value
-    Vec3 on_ends[2]; ///< the same without derivatives
+    Vec3 on_ends[2]; ///< wrenches on a and b per unit force, without derivatives
     double value = 0.0;
-    std::vector<double>& slopes; ///< by operand; valid until the next Gradient is made
+    std::vector<double>& slopes; ///< derivative of the force with respect to each operand; valid until the next Gradient is created
 
     Gradient(const ElementData& entry, const Evaluation& e) : slopes(room()) {
       if (slopes.size() < entry.formula.operands().size()) slopes.resize(entry.formula.operands().size());
@@ -212,7 +214,7 @@ private:
   }
 };
 
-// Sets the measure for the coordinate of these markers. Returns false if it has no direction.
+// Sets the row for the coordinate between these markers. Returns false, with an error, if its direction is undefined.
 bool set_coordinate(const FormulaForce& e, const CompiledMarker& a, const CompiledMarker& b, SystemBuilder& builder, ForceEntry& entry) {
   const bool is_y = e.coordinate == "y" || e.coordinate == "own_y";
   const Vec2 axis = is_y ? Vec2(0.0, 1.0) : Vec2(1.0, 0.0);
@@ -255,7 +257,7 @@ template <class Group> void add(SystemBuilder& builder, ForceEntry entry, bool i
                         [&group, i](const Snapshot& s) { return group.entries[i].own_now(*s.evaluation).rate; });
 }
 
-// Returns an evaluation of the reference pose, to check that formulas have a value there.
+// Returns an evaluation in the reference pose, to check that formulas have a value there.
 Evaluation reference_evaluation(SystemBuilder& builder, const std::vector<double>& inner) {
   Evaluation e;
   e.motion = &builder.reference(k_ground);
@@ -335,7 +337,7 @@ formula = "-'1 N m s' * rate"
     k.stage = 1;
     k.holds<T>();
     k.compile = compile_formula_force;
-    // A formula that names coordinates or rates answers a motion; one that names signals acts with these.
+    // A formula without names is a constant load.
     k.has_constant_load = [](const Element& element) {
       return Formula(static_cast<const T&>(element).formula, "formula", {}).names().empty();
     };

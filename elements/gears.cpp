@@ -9,7 +9,7 @@ namespace steplap {
 
 namespace {
 
-// Relative tolerance for pitch circles that should touch, given the digits of a file.
+// Relative tolerance for pitch circles that should touch, whose data have few digits in a file.
 constexpr double k_pitch_tolerance = 1e-6;
 
 void add_row(RowSpec row, SystemBuilder& builder) {

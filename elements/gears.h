@@ -21,7 +21,7 @@ struct Gear : Element {
 struct Rack : Element {
   std::string a, b = "ground";
   double radius = 0.0;
-  Vec2 axis{1.0, 0.0}; ///< direction in marker b's axes; the pinion is on its left
+  Vec2 axis{1.0, 0.0}; ///< direction of the rack in marker b's axes; the pinion is on its left
 };
 
 [[nodiscard]] const ElementKind& gear_kind();

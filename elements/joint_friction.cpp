@@ -21,8 +21,8 @@ bool is_zero_at(const Signal& signal, double t) {
   return piece.is_level && piece.c[0] == 0.0 && piece.harmonics.empty() && piece.modulated.empty();
 }
 
-// Returns the times at which a piece from `start` to `end` may have its minimum: its ends and zeros of its slope; with harmonics, samples
-// that resolve them.
+// Returns times between which a piece from `start` to `end` has its minimum: its ends and the zeros of its slope, or, with harmonics,
+// samples that resolve them.
 std::vector<double> places_of_least(const Signal& signal, const Signal::Piece& piece, double start, double end) {
   constexpr double k_samples_of_a_turn = 64.0, k_whole_turn = 6.283185307179586;
   std::vector<double> places{start, end};
@@ -32,7 +32,8 @@ std::vector<double> places_of_least(const Signal& signal, const Signal::Piece& p
     return places;
   }
   const double a = 3.0 * piece.c[3], b = piece.c[2], c = piece.c[1], root = std::sqrt(std::max(0.0, b * b - a * c));
-  for (const double tau : {(-b - root) / a, (-b + root) / a, -0.5 * c / b}) // for a cubic, two zeros; for a quadratic one
+  // Zeros of the slope: two for a cubic (first and second), one for a quadratic (third).
+  for (const double tau : {(-b - root) / a, (-b + root) / a, -0.5 * c / b})
     if (const double t = piece.start + tau; t > start && t < end) places.push_back(t);
   return places;
 }
@@ -62,10 +63,10 @@ double time_of_least(const Signal& signal, double end) {
   return signal.value(least) < signal.value(best) ? least : best;
 }
 
-// Reports a signal that becomes negative. Negative pressure has no meaning, and the kink where a clipped pressure becomes zero would not be
-// located as an event.
+// Returns false and reports an error if the signal becomes negative. Negative pressure has no meaning, and the kink of a pressure clipped
+// at zero would not be located as an event.
 bool is_pressure(const JointFriction& e, const Signal* signal, SystemBuilder& builder) {
-  constexpr double k_rounded_zero = 1e-12; // a factor that touches zero may be rounded to this far below it
+  constexpr double k_rounded_zero = 1e-12; // a signal that touches zero may be rounded to this far below it
   if (!signal) return true;
   const double t = time_of_least(*signal, builder.model().simulation.end), least = signal->value(t);
   if (least >= -k_rounded_zero) return true;
@@ -81,11 +82,12 @@ public:
   RowSpec row;
   double holds = 0.0, drags = 0.0, viscous = 0.0;
   double per_stribeck_velocity = 0.0; ///< 1/v_s, s/m or s/rad; 0: the bound does not depend on velocity
-  const Signal* signal = nullptr;     ///< factor on all of them, or null
+  const Signal* signal = nullptr;     ///< signal that multiplies all bounds; null: factor 1
 
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
-  // Called at events only. The friction is free during pieces of the signal that are zero throughout, which begin and end with an event.
+  // Evaluated at events only: the friction is free during pieces of the signal that are zero throughout, and such pieces begin and end with
+  // an event.
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override { return !signal || !is_zero_at(*signal, e.t); }
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate, double* wrench) const override {
     wrench[0] = sliding_force(rate[0], state, share(e.t));
@@ -123,7 +125,7 @@ private:
     if (viscous == 0.0 && per_stribeck_velocity == 0.0) return 0.0;
     return std::abs(evaluate_row<false>(row, e.motion).rate);
   }
-  /// Returns the bound for a rate in the direction of slip.
+  /// Returns the bound, N or N m, for a rate ≥ 0 in the direction of slip.
   template <class S> [[nodiscard]] S sliding_bound(const S& rate) const {
     S bound{drags};
     if (per_stribeck_velocity != 0.0) {

@@ -16,9 +16,9 @@ struct JointFriction : Element {
   std::string coordinate = "angle"; ///< angle, x, y (marker b's axes) or distance
   double holds = 0.0;               ///< static bound, N m or N
   std::optional<double> drags;
-  std::optional<double> stribeck_velocity; ///< rad/s or m/s
-  double viscous = 0.0;                    ///< N m s/rad or N s/m
-  std::string signal;                      ///< multiplies all bounds; empty: 1
+  std::optional<double> stribeck_velocity; ///< velocity v_s of the Stribeck law, rad/s or m/s
+  double viscous = 0.0;                    ///< viscous coefficient, N m s/rad or N s/m
+  std::string signal;                      ///< name of the signal that multiplies all bounds; empty: factor 1
 };
 
 [[nodiscard]] const ElementKind& joint_friction_kind();

@@ -54,7 +54,7 @@ void add(SystemBuilder& builder, std::vector<RowSpec> rows, bool is_rigid = fals
     builder.add_channel(rows[i].quantity, rows[i].kind == MeasureKind::angle ? "N m" : "N", {"reaction on a", sign_of(rows[i])},
                         [r](const Snapshot& s) { return s.row_force[r]; });
   }
-  std::array<RowSpec, 3> held; // no joint has more rows
+  std::array<RowSpec, 3> held; // no joint constrains more than three rows
   std::copy(rows.begin(), rows.end(), held.begin());
   if (rows.size() > 1 && rows[1].kind == MeasureKind::axis)
     builder.offer_channel("reaction", "N", {"size of the reaction force", "never negative"},

@@ -17,16 +17,16 @@ namespace steplap {
 struct Joint : PlacingElement {
   Vec2 axis{1.0, 0.0};          ///< prismatic, point_on_line: direction in marker b's axes
   std::optional<double> length; ///< distance: length of the rod, m
-  // Reference pose of marker a relative to marker b.
-  std::optional<double> angle;            ///< revolute, prismatic, weld; rad
-  std::optional<double> angular_velocity; ///< revolute; rad/s
-  std::optional<double> displacement;     ///< prismatic: along the axis, m
-  std::optional<double> speed;            ///< prismatic: along the axis, m/s
+  // Given reference pose of marker a relative to marker b; determines the pose of one body.
+  std::optional<double> angle;            ///< for revolute, prismatic, weld; rad
+  std::optional<double> angular_velocity; ///< for revolute; rad/s
+  std::optional<double> displacement;     ///< for prismatic: along the axis, m
+  std::optional<double> speed;            ///< for prismatic: along the axis, m/s
 
   [[nodiscard]] std::optional<RelativePose> relative_pose() const override;
   [[nodiscard]] const char* placing_field() const override { return is_slide ? "displacement" : "angle"; }
   [[nodiscard]] const char* idle_field() const override;
-  bool is_slide = false; ///< prismatic: the field `displacement` decides whether it determines a pose
+  bool is_slide = false; ///< true for prismatic: a given `displacement` determines a pose
 };
 
 [[nodiscard]] const ElementKind& revolute_kind();

@@ -45,7 +45,7 @@ struct StopsLaw {
   }
   void event_value(double value, double rate, UnitMode mode, double* event_value, double* event_derivative) const {
     if (mode != k_between) {
-      event_derivative[1] = std::numeric_limits<double>::quiet_NaN(); // rate of a force, or of nothing
+      event_derivative[1] = std::numeric_limits<double>::quiet_NaN(); // unknown: the second event function is a force or unused
       if (is_upper(mode)) upper.event_value(-value, -rate, contact_mode(mode), event_value, event_derivative);
       else lower.event_value(value, rate, contact_mode(mode), event_value, event_derivative);
       return;
@@ -92,10 +92,11 @@ LawGroup<Measure, StopsLaw>& add(SystemBuilder& builder, int a, int b, const Mea
   return group;
 }
 
-// Distance, rad or m, by which a stop is moved inwards if the coordinate starts at it; k_touch_of_size is relative to large coordinates. It
-// exceeds the errors of assembly and rounding, so that the stop is in contact from the start, with a force of k_touch times the stiffness.
+// Distance, rad or m, by which a stop is moved inwards if the coordinate starts at it; k_touch_of_size is relative to large coordinates.
+// The distance exceeds the errors of assembly and rounding, so that the stop is in contact from the start, with a force of k_touch times
+// the stiffness.
 constexpr double k_touch = 4e-12, k_touch_of_size = 1e-14;
-// Largest distance from a stop that counts as at the stop: rounding of values computed for the model file.
+// Largest distance from a stop, rad or m, that counts as starting at the stop: values computed for the model file are rounded.
 constexpr double k_at_stop = 1e-11;
 
 double stop_at(double given, double now, double inwards) {
@@ -107,7 +108,7 @@ template <class Measure>
 void add_stops(const Limit& e, SystemBuilder& builder, int a, int b, const Measure& measure, bool is_absolute, bool is_angle) {
   const double now = measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
   const double zero = is_absolute ? 0.0 : now;
-  const double never = std::numeric_limits<double>::max(); // replaces a stop that is not given
+  const double never = std::numeric_limits<double>::max(); // position of a stop that is not given
   StopsLaw law;
   law.lower = {e.stiffness, e.damping, e.lower ? stop_at(zero + *e.lower, now, 1.0) : -never};
   law.upper = {e.stiffness, e.damping, e.upper ? -stop_at(zero + *e.upper, now, -1.0) : -never};

@@ -20,7 +20,7 @@ template <class S> struct AppliedLoad {
   S couple{0.0};
 };
 
-// `value` returns the value of a signal at the time.
+// Returns the load on the body. `value` returns the value of a signal at the present time.
 template <class S, class Value> AppliedLoad<S> load_by(const LoadEntry& entry, const Motion<S>& body, const Value& value) {
   const auto sum = [&value](double constant, const Signal* signal) { return constant + (signal ? value(signal) : S(0.0)); };
   AppliedLoad<S> load;
@@ -64,7 +64,7 @@ public:
       j.b = k_ground;
       j.stiffness.setZero();
       j.damping.setZero();
-      // Rotation of the body rotates the lever. A force fixed in the body rotates with it, so its moment is constant.
+      // A rotation of the body rotates the lever. A force fixed in the body rotates with it, so its moment is constant.
       if (entry.is_in_body) {
         j.stiffness(0, 2) = -load.force.y;
         j.stiffness(1, 2) = load.force.x;

@@ -9,7 +9,7 @@ struct Load : Element {
   std::string at;
   Vec2 force = Vec2::Zero();
   double couple = 0.0;
-  std::string force_x, force_y, torque; ///< signals, added to the constant values
+  std::string force_x, force_y, torque; ///< names of signals that are added to the constant values
   std::string frame = "ground";
 };
 

@@ -9,7 +9,7 @@ namespace steplap {
 
 namespace {
 
-/// Values of signals in an evaluation: the mean over the step for an effort, which is a force; the present value for a target.
+/// Reads signals in an evaluation: the mean over the step for an effort, which is a force; the present value for a target.
 struct InputsOf {
   const Evaluation& e;
 
@@ -26,16 +26,16 @@ struct TracedInputsOf {
 
 struct MotorLaw {
   const Signal *effort = nullptr, *target = nullptr;
-  double constant_effort = 0.0, droop = 0.0; ///< 1/no-load speed
+  double constant_effort = 0.0, droop = 0.0; ///< constant part of the effort; droop: 1/no-load speed
   double proportional = 0.0, derivative = 0.0, start = 0.0;
 
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, const Evaluation& e) const {
     return force_by(value, rate, InputsOf{e});
   }
-  // `at_time` returns the value of a signal.
+  // Returns the force of the motor. `at_time` returns the value of a signal.
   template <class S, class AtTime> [[nodiscard]] S force_by(const S& value, const S& rate, const AtTime& at_time) const {
     const auto stall = constant_effort + (effort ? at_time(*effort) : 0.0);
-    const bool is_reverse = droop != 0.0 && stall < 0.0; // its no-load speed is in the other direction
+    const bool is_reverse = droop != 0.0 && stall < 0.0; // negative effort: the no-load speed is in the opposite direction
     S f = S(stall) * (is_reverse ? S(1) + S(droop) * rate : S(1) - S(droop) * rate);
     if (proportional == 0.0 && derivative == 0.0) return f;
     const auto wanted = target ? at_time(SignalInput{target}) : 0.0, wanted_rate = target ? at_time(SignalInput{target, true}) : 0.0;

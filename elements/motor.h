@@ -14,10 +14,10 @@ namespace steplap {
 struct Motor : Element {
   std::string a, b = "ground";
   std::string coordinate = "angle"; ///< angle, x, y (marker b's axes) or distance
-  std::string effort;               ///< signal, N m or N
+  std::string effort;               ///< name of the signal of the effort, N m or N
   double constant_effort = 0.0;
-  std::optional<double> no_load_speed; ///< rad/s or m/s, in the direction of the effort
-  std::string target;                  ///< signal, rad or m
+  std::optional<double> no_load_speed; ///< speed in the direction of the effort at which the effort becomes zero, rad/s or m/s
+  std::string target;                  ///< name of the signal of the target position, rad or m
   double proportional = 0.0, derivative = 0.0;
 };
 

@@ -50,11 +50,11 @@ struct ConvexOutline {
   [[nodiscard]] int corner_count() const { return static_cast<int>(corners.size()); }
 };
 
-/// An array without initialisation. Most outlines have four corners, and initialising the full capacity would take longer than placing
-/// them. Elements must be written before they are read.
+/// An array without initialisation, for outlines: most have four corners, and initialising the full capacity would take longer than
+/// computing them. Elements must be written before they are read.
 template <class T, std::size_t N> class Room {
 public:
-  Room() {} // NOLINT: not as zeros
+  Room() {} // NOLINT: not initialised
   [[nodiscard]] T& operator[](std::size_t i) { return items_[i]; }
   [[nodiscard]] const T& operator[](std::size_t i) const { return items_[i]; }
 
@@ -85,20 +85,20 @@ void place_outline(const ConvexOutline& outline, const Body& body, const Pair<S>
   }
 }
 
-/// Distance of two outlines (negative: least displacement that separates them) and where it occurs.
+/// Signed distance of two outlines (negative: least displacement that separates them), and the face and corner that define it.
 struct Separation {
   double gap = -std::numeric_limits<double>::infinity();
-  int face = -1;   ///< edge of a, or edge of b counted after those of a
-  int corner = -1; ///< corner of the other body that is nearest to this face, or deepest behind it
+  int face = -1;   ///< face as edge of a; edges of b are counted after those of a
+  int corner = -1; ///< corner of the other body that is nearest to this face, or deepest behind it; −1: none
 };
 
-/// Returns the distance for one face, with the nearest or deepest corner of the other body.
+/// Returns the distance of the other outline from one face, with its nearest or deepest corner.
 inline Separation face_separation(const PlacedOutline<double>& own, int edge, const PlacedOutline<double>& other) {
   Separation found;
   found.gap = std::numeric_limits<double>::infinity();
   for (int i = 0; i < other.corner_count; ++i) {
     const double height = dot(own.normal[edge], other.corner[i]) - own.offset[edge];
-    if (!(height >= found.gap)) { // also for NaN, which is reported where forces are checked
+    if (!(height >= found.gap)) { // the comparison also accepts NaN, which is reported where forces are checked
       found.gap = height;
       found.corner = i;
     }
@@ -106,7 +106,8 @@ inline Separation face_separation(const PlacedOutline<double>& own, int edge, co
   return found;
 }
 
-/// Convex outlines are separate exactly if a face of one of them has the other in front of it.
+/// Returns the distance of two outlines: the largest over all faces. Convex outlines are separate if and only if one of their faces
+/// separates them.
 inline Separation separation_of(const PlacedOutline<double>& a, const PlacedOutline<double>& b) {
   Separation best;
   const auto look = [&best](const PlacedOutline<double>& own, const PlacedOutline<double>& other, int first) {
@@ -123,20 +124,21 @@ inline Separation separation_of(const PlacedOutline<double>& a, const PlacedOutl
   return best;
 }
 
-/// A convex polygon during clipping; `edge`: origin of the edge from each corner to the next, an edge of a, or of b counted after those of
-/// a.
+/// A convex polygon during clipping. `edge`: for each corner, the original edge that leads to the next corner; edges of b are counted after
+/// those of a.
 template <class S> struct CutRing {
   int size = 0;
   RoomFor<S, Pair<S>, k_most_ring> corner;
   std::array<int, k_most_ring> edge;
 };
 
-/// Writes the part of `in` with depth ≥ 0 to `out`; `depth` is a linear function of position. The new edge gets the index `made`.
+/// Writes the part of `in` with depth ≥ 0 to `out`; `depth` is a linear function of position. The new edge gets the number `made`.
 template <class S, class Depth> void cut(const CutRing<S>& in, const Depth& depth, int made, CutRing<S>& out) {
   out.size = 0;
   if (in.size == 0) return;
   const auto put = [&out](const Pair<S>& corner, int edge) {
-    if (out.size == k_most_ring) return; // capacity exceeded: only in slivers of rounding size, whose corners change sides more than twice
+    // Capacity exceeded, only possible in slivers of rounding size, whose corners change sides more than twice: the rest is dropped.
+    if (out.size == k_most_ring) return;
     out.corner[out.size] = corner;
     out.edge[out.size++] = edge;
   };
@@ -156,17 +158,17 @@ template <class S, class Depth> void cut(const CutRing<S>& in, const Depth& dept
   }
 }
 
-/// Forces on a by the overlap.
+/// Resultant of the forces on a by the overlap.
 template <class S> struct OverlapForce {
   Pair<S> force;
   S moment{0};      ///< moment about the origin, N m
-  S volume{0};      ///< ∫ d dA
-  S dissipation{0}; ///< W
-  /// One outline is completely inside the other; the boundary of the overlap then belongs to one body, and no force separates them.
+  S volume{0};      ///< ∫ d dA, m³
+  S dissipation{0}; ///< dissipated power, W
+  /// True if one outline is completely inside the other: the boundary of the overlap then belongs to one body, and no force separates them.
   bool is_swallowed = false;
 };
 
-/// Velocity of a's points relative to b: u + Ω ẑ × x.
+/// Velocity of points of a relative to b: u + Ω ẑ × x, with x from the common origin.
 template <class S> struct RelativeVelocity {
   Pair<S> u;
   S spin{0};
@@ -200,8 +202,8 @@ template <class S> struct EdgeLine {
 
 } // namespace overlap_detail
 
-/// Returns the forces for outlines placed about one origin. `stiffness` k in N/m², `dissipation` α in s/m. `volume` is complete only with
-/// `is_whole`; otherwise cells that contribute no force are skipped.
+/// Returns the forces of two outlines placed about a common origin. `stiffness`: k, N/m²; `dissipation`: α, s/m. The volume is complete
+/// only with `is_whole`; otherwise cells without force are skipped.
 template <class S>
 OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>& b, const RelativeVelocity<S>& velocity, double stiffness,
                               double dissipation, bool is_whole = false) {
@@ -221,7 +223,7 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
   }
   CutRing<S>& overlap = rings[now];
   if (overlap.size < 3) return result;
-  const Pair<S> origin = overlap.corner[0]; // relative to one of its corners, for accuracy of thin overlaps
+  const Pair<S> origin = overlap.corner[0]; // origin at a corner of the overlap, for accuracy of thin overlaps
   for (int i = 0; i < overlap.size; ++i) overlap.corner[i] = overlap.corner[i] - origin;
   const Pair<S> u = velocity.u + velocity.spin * perp(origin);
   RoomFor<S, EdgeLine<S>, k_most_ring> line;
@@ -233,7 +235,7 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
     line[i].normal = is_a ? a.normal[edge] : b.normal[edge - a.edge_count];
     line[i].offset = (is_a ? a.offset[edge] : b.offset[edge - a.edge_count]) - dot(line[i].normal, origin);
   }
-  CutRing<S>*cell = &rings[1 - now], *spare = &rings[2]; // `cell` is the ring written last
+  CutRing<S>*cell = &rings[1 - now], *spare = &rings[2]; // `cell` points to the ring written last
   const S k(stiffness), alpha(dissipation);
   result.is_swallowed = of_a == 0 || of_a == overlap.size;
   const bool is_from_a = 2 * of_a < overlap.size;
@@ -263,7 +265,7 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
     cut(*cell, pressure, -1, *spare);
     const auto part = overlap_detail::sums_of(*spare, n);
     const S rest = S(1) + alpha * closing, slope = alpha * turning;
-    // Contribution of the dissipation; exactly zero at rest.
+    // Force of the dissipation; exactly zero at rest.
     const S f = rest * part.area + slope * part.across - whole.area, m = rest * part.across + slope * part.across2 - whole.across;
     result.force = result.force + (k * f) * n;
     moment += k * m;

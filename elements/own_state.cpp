@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* k_reserved[] = {"value", "rate", "t", "pi"};
 
-// Checks that formulas can distinguish the name from operators and numbers.
+// Checks that formulas can distinguish the state's name from operators and numbers.
 void check_state(const OwnState& state) {
   const auto fail = [&](const char* field, const std::string& message) {
     throw ModelError(state.place(field), "state '" + state.name + "': " + message);

@@ -22,9 +22,9 @@ using D12 = Dual<12>;
 
 struct Outlines {
   ConvexOutline a, b;
-  double reach_a = 0.0, reach_b = 0.0; ///< distance of the farthest corner from the centre of gravity
-  double through = 0.0;                ///< GapBounds
-  double narrowest = 0.0;              ///< the smaller of the least widths of a and b
+  double reach_a = 0.0, reach_b = 0.0; ///< distance of the farthest corner from the centre of gravity, m
+  double through = 0.0;                ///< GapBounds::through, m: penetration at which one part is entirely through the other
+  double narrowest = 0.0;              ///< the smaller of the widths (width_of()) of a and b, m
 };
 
 template <class S, class B> struct Placed {
@@ -119,15 +119,15 @@ public:
   void register_turns(TurnTable& turns) const override {
     for (const ElementData& entry : entries) turns.add_all({entry.a, entry.b});
   }
-  // For friction on a face of a, corners of b are needed in the axes of a.
+  // For friction on a face of a, positions of b's corners in the axes of a are needed.
   void register_links(LinkTable& links) override {
     for (ElementData& entry : entries) {
       entry.link = links.add(entry.a, entry.b);
       if (entry.has_friction && entry.a != k_ground) (void)links.add(entry.b, entry.a);
     }
   }
-  // Adds the gap, the distance of the other body from a face that separates both; no pair of points is closer. A half-plane has no corners,
-  // so its reach extends to its points near the other body.
+  // Adds the gap: the distance of the other body from the face that separates them is a lower bound of all point distances. A half-plane
+  // has no corners, so its reach extends to its points near the other body.
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const override {
     for (const ElementData& entry : entries) {
       const Placed<double, Motion<double>> placed(*entry.outlines, motion[entry.a], motion[entry.b]);
@@ -143,8 +143,8 @@ public:
       bounds.through = entry.outlines->through;
     }
   }
-  // Returns the first unit in which one outline lies within the other. Its depth is then at least the smaller width, so shallower contacts
-  // are skipped.
+  // Returns the first unit in which one outline lies within the other; −1 if there is none. Such a contact has a depth of at least the
+  // smaller width, so shallower contacts are skipped.
   [[nodiscard]] int first_swallowed(const std::vector<UnitMode>& modes, const std::vector<double>& event_value,
                                     const std::function<const Motion<double>*()>& motion) const override {
     for (const ElementData& entry : entries) {
@@ -166,9 +166,9 @@ public:
 
   struct Approach {
     double gap = 0.0, rate = 0.0;
-    Pair<double> corner, normal; ///< the corner with the least gap, and the direction in which a is pushed
+    Pair<double> corner, normal; ///< corner with the least gap; direction of the force on a
   };
-  /// Returns the gap with its rate, the velocity of the corner against the face.
+  /// Returns the gap and its rate, the velocity of the corner normal to the face.
   [[nodiscard]] Approach measured(int element, const Evaluation& e) const {
     const ElementData& entry = entries[element];
     const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b];
@@ -180,10 +180,11 @@ public:
   }
 
 private:
-  // Force in mode pressed where the contact law has none. Beyond zero gap it has the opposite sign, like the force of a single corner. If
-  // one outline lies completely within the other, it pushes outwards along the shortest way, as much as for a corner of that depth. Stages
-  // of a step that is too long may leave the contact, pass a thin part, or end below the ground. Without this force they would see no
-  // force, and the error estimate of the step would be zero. No step ends in such a state (first_swallowed()).
+  // Adds a restoring force in mode pressed where the contact law has none. Beyond zero gap it has the opposite sign, continuing the force
+  // of a single corner. If one outline lies completely within the other, it acts outwards along the shortest way, with the force of a
+  // corner of that depth. Needed because stages of a step that is too long may leave the contact, pass a thin part, or end below the
+  // ground: without any force there, the error estimate would be zero and the step would be accepted. No accepted step ends in such a state
+  // (first_swallowed()).
   static void bring_back(const ElementData& entry, const Placed<double, Origin>& placed, const Approach& now, BodyForce& sum) {
     const Pair<double> f = (-entry.stiffness * now.gap * std::abs(now.gap)) * now.normal;
     sum.fx += f.x;
@@ -199,8 +200,8 @@ private:
   static OverlapForce<S> force(const ElementData& entry, const Placed<S, B>& placed, const RelativeVelocity<S>& velocity) {
     return overlap_force(placed.a, placed.b, velocity, entry.stiffness, entry.dissipation);
   }
-  // The rate of the gap is the velocity of the corner relative to the material point of the other body at the same position, whichever body
-  // has the face.
+  // The rate of the gap is the velocity of the corner relative to the material point of the other body at the same position, irrespective
+  // of which body has the face.
   template <class B> static Approach approach(const Placed<double, B>& placed, const RelativeVelocity<double>& velocity) {
     const Separation s = separation_of(placed.a, placed.b);
     const int faces = placed.a.edge_count;
@@ -211,7 +212,7 @@ private:
   }
 };
 
-// Contact point of friction: a face, and a corner of the other body or the edge that begins there.
+// Contact point of friction on a face: a corner of the other body, or the edge that begins there.
 struct HoldingPlace {
   int face = 0, corner = 0;
   bool is_edge = false;
@@ -221,12 +222,13 @@ class PolygonFriction final : public CoulombFriction, public ApproximatePlace {
 public:
   std::shared_ptr<const Outlines> outlines;
   int a = k_ground, b = k_ground;
-  std::vector<HoldingPlace> places; ///< in the order of `feet`
+  std::vector<HoldingPlace> places; ///< contact points, in the order of `feet`
   std::vector<int> first;           ///< index of the first contact point of each face
 
-  static constexpr double k_dead_band = 1e-13; // m, as for feet
-  static constexpr double k_same_face = 0.1;   // rad: two faces that lie on each other may differ in angle by less
-  // Largest velocity error of a contact point, m/s; friction of a tenth of the weight removes it within a microsecond.
+  static constexpr double k_dead_band = 1e-13; // dead band for changes of the contact point, m, as for feet
+  static constexpr double k_same_face = 0.1;   // largest angle, rad, between two faces that lie on each other
+  // Largest velocity error of an approximate contact point, m/s. Friction of a tenth of the weight removes such a velocity within a
+  // microsecond.
   static constexpr double k_most_error = 1e-6;
 
   void make_places(int base) {
@@ -246,14 +248,15 @@ public:
   void mark_bodies(std::vector<char>& is_used) const override { is_used[a] = is_used[b] = 1; }
 
   [[nodiscard]] bool record_friction(TracedEvaluation&, const FrictionState&, const TapeNumber*, TapeNumber*, TapeNumber*) const override {
-    return false; // the contact point depends on comparisons
+    return false; // not traceable: the choice of the contact point depends on comparisons
   }
   [[nodiscard]] double contact_point_event(const Evaluation& e, const FrictionState& state) const override {
     const Placed<double, Motion<double>> placed(*outlines, e.motion[a], e.motion[b]);
     const HoldingPlace& place = places[state.foot];
     const Heights h = heights(placed, place.face);
     const double best = separation_of(placed.a, placed.b).gap, own = h.least();
-    const double face_left = own - 2.0 * best; // both terms are negative while pressed
+    // Negative if the present face has twice the penetration of the best one; both terms are negative while pressed.
+    const double face_left = own - 2.0 * best;
     return k_dead_band + std::min(face_left, left_of(h, place));
   }
   void switch_contact_point(const Evaluation& e, FrictionState& state) const override {
@@ -294,7 +297,7 @@ public:
   }
 
 private:
-  // Heights of the other body's corners above the line of a face.
+  // Heights of the other body's corners above the line of a face, m.
   struct Heights {
     int count = 0;
     std::array<double, k_most_corners> of;
@@ -311,8 +314,8 @@ private:
     for (int i = 0; i < h.count; ++i) h.of[i] = dot(own.normal[edge], other.corner[i]) - own.offset[edge];
     return h;
   }
-  // Returns the margin of a contact point: for a corner, its neighbours are outside and higher; for an edge, both its corners are inside
-  // and lower than the next ones.
+  // Returns the margin of a contact point, positive while it is valid: for a corner, its neighbours are outside and higher; for an edge,
+  // both its corners are inside and lower than the next ones.
   static double left_of(const Heights& h, const HoldingPlace& place) {
     const int i = place.corner, next = h.after(i);
     if (!place.is_edge) {
@@ -340,7 +343,7 @@ private:
   }
 };
 
-// Returns the frame of the body's own coordinates, in which its outline is given. The marker with the body's name is at the centre of
+// Returns the frame of the body's own coordinates, in which its outline is given; the marker with the body's name is at the centre of
 // gravity instead.
 CompiledMarker frame_of_body(const std::string& body, const SystemBuilder& builder) {
   CompiledMarker frame = builder.marker(body);
@@ -350,7 +353,7 @@ CompiledMarker frame_of_body(const std::string& body, const SystemBuilder& build
   return frame;
 }
 
-// Returns the given corners, or those of the marker's body.
+// Returns the outline with the given corners or, if there are none, with those of the marker's body; nothing after an error.
 std::optional<ConvexOutline> outline_of(const std::vector<Vec2>& given, const std::string& marker, const char* field,
                                         SystemBuilder& builder) {
   const std::string body = body_of(marker, builder);
@@ -445,7 +448,8 @@ void compile_polygon(const Element& element, SystemBuilder& builder) {
   if (e.static_friction) add_friction(e, group.entries.back(), builder);
 }
 
-// Half of the width of the thinner outline; for a half-plane the whole width of the other. Without outlines there is no limit.
+// Returns the depth, m, at which the contact law becomes invalid: half of the width of the thinner outline; for a half-plane the whole
+// width of the other. Nothing without outlines.
 std::optional<double> depth_limit(const PolygonContact& e, const Model& model) {
   const auto width = [&](const std::vector<Vec2>& given, const std::string& marker) -> std::optional<double> {
     const Body* const body = place_of(model, marker).body;

@@ -1,13 +1,14 @@
 // Contact of the convex outline of a with that of b, or with a half-plane of b (the ground), for boxes that stack, tip and fall. Contact
-// points result from the motion and need not be defined.
+// points follow from the motion and need not be defined.
 //
 // Normal force: from an energy of the overlap (outline_overlap.h). The overlap of two convex outlines is one piece and makes one contact.
 // It is open if a face of one outline separates them, otherwise pressed.
 //
 // Friction, if given, sticks exactly along one row, as in coulomb_stick. The touching parts of both bodies are on one line, so that a
-// single tangential coordinate is sufficient. The line is the face, of either body, with the least penetration. The contact point belongs
-// to the other body: the corner behind the face, or the middle of the edge if both its corners are. Changes of face or point are events
-// ("changes foot"). A face is kept until its penetration is twice that of another, which prevents alternation between equal faces.
+// single tangential coordinate is sufficient. This line is the face, of either body, with the least penetration. The contact point is a
+// point of the other body: the corner behind the face, or the middle of an edge whose corners are both behind it. Changes of face or point
+// are events ("changes foot"). A face is kept until its penetration is twice that of another, which prevents alternation between equal
+// faces.
 //
 // Valid for overlaps that are small compared with the parts; beyond half of the thickness the force pushes the wrong way.
 #pragma once
@@ -22,12 +23,12 @@ namespace steplap {
 
 struct PolygonContact : Element {
   std::string a, b = "ground";
-  std::vector<Vec2> outline_a, outline_b; ///< m, in the markers' axes; empty: outline of the body
+  std::vector<Vec2> outline_a, outline_b; ///< corners, m, in the markers' axes; empty: outline of the body
   std::optional<Vec2> normal;             ///< b is the half-plane behind the line through marker b with this normal
-  double stiffness = 0.0;                 ///< N/m²
-  double dissipation = 0.0;               ///< Hunt–Crossley α
+  double stiffness = 0.0;                 ///< force per overlap width and depth, N/m²
+  double dissipation = 0.0;               ///< Hunt–Crossley α, s/m
   std::optional<double> static_friction, kinetic_friction;
-  std::string source; ///< origin of these values; results name it where the values are unusual
+  std::string source; ///< origin of the values above, quoted in results where the values are unusual
 };
 
 [[nodiscard]] const ElementKind& polygon_contact_kind();

@@ -16,8 +16,8 @@ DriveLevel level_of(const std::string& as) {
   return as == "velocity" ? DriveLevel::velocity : DriveLevel::acceleration;
 }
 
-// A coordinate of a body's centre of gravity relative to the ground axes can be locked instead of being constrained by a row. Returns 0, 1,
-// 2 for x, y, θ, or −1.
+// Returns which coordinate of body a the row prescribes directly, 0, 1, 2 for x, y, θ of the centre of gravity in ground axes; −1 if it is
+// none. Such a coordinate can be locked, without a constraint row.
 int lockable_coordinate(const RowSpec& row, const CompiledMarker& a) {
   if (a.body == k_ground || row.b != k_ground || row.kind == MeasureKind::distance) return -1;
   if (row.kind == MeasureKind::angle) return 2;
@@ -26,7 +26,8 @@ int lockable_coordinate(const RowSpec& row, const CompiledMarker& a) {
   return row.direction == Vec2(0.0, 1.0) ? 1 : -1;
 }
 
-// A jump of velocity is an impact. A drive cannot follow it, since everything connected by joints would have to jump, too.
+// Returns the message for a signal that jumps. A jump of velocity is an impact, which a drive cannot perform, because everything connected
+// by joints would have to jump, too.
 std::string jump_message(const PrescribedMotion& e, const Signal::Jump& jump) {
   const std::string what = jump.is_of_rate ? "the rate of signal '" : "signal '";
   const std::string moved = !jump.is_of_rate && e.as == "position" ? "body" : "body's velocity";
@@ -37,14 +38,14 @@ std::string jump_message(const PrescribedMotion& e, const Signal::Jump& jump) {
          " at t = " + number_text(jump.t) + " s, so it cannot be a " + e.as + ": the " + moved + " would have to jump; " + remedy;
 }
 
-// Returns true if the difference is more than rounding of a pose given with few digits.
+// Returns true if the positions differ by more than the rounding of a pose given with few digits.
 bool jumps(double now, double wanted) {
   constexpr double k_rough = 1e-3, k_least_jump = 1e-9; // relative to the coordinate; m, rad
   return std::abs(wanted - now) > std::max(k_least_jump, k_rough * std::max(std::abs(now), std::abs(wanted)));
 }
 
 std::string start_message(const PrescribedMotion& e, const RowSpec& row, double now, double wanted) {
-  if (std::abs(wanted) < 1e-12 * std::abs(now)) wanted = 0.0; // below the rounding error of a sine
+  if (std::abs(wanted) < 1e-12 * std::abs(now)) wanted = 0.0; // rounding error of a computed zero, such as the sine of π
   const std::string unit = row.kind == MeasureKind::angle ? " rad" : " m";
   std::string text = "the reference pose has " + number_text(now) + unit + " where the motion begins with " + number_text(wanted) + unit +
                      " at t = 0: the body would have to jump. ";
@@ -73,7 +74,8 @@ void compile_prescribed(const Element& element, SystemBuilder& builder) {
   if (const auto jump = row.drive->first_jump(row.level, 0.0, builder.model().simulation.end)) return builder.error(jump_message(e, *jump));
   const double now = evaluate_row<false>(row, &builder.reference(0)).value;
   const double base = e.zero == "reference" ? now : 0.0;
-  if (row.level == DriveLevel::position) // also for a position relative to the reference pose: a start would move the body without notice
+  // Necessary even for a position relative to the reference pose, because the start would move the body without notice.
+  if (row.level == DriveLevel::position)
     if (const double wanted = base + row.drive->value(0.0); jumps(now, wanted)) return builder.error(start_message(e, row, now, wanted));
   row.base = builder.add_base(base);
   const int r = builder.next_row();

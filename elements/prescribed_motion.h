@@ -2,8 +2,8 @@
 //
 // The signal is the acceleration, velocity or position; the others are its exact integrals and derivatives (signal.h). An acceleration
 // starts from the initial position and velocity, a velocity from the initial position. A position is the coordinate itself, or its
-// difference to the reference pose. If the reference pose does not agree with the start of a position signal, compile() reports an error,
-// since the body would have to jump. The multiplier is the required force or moment on a, for example the braking force.
+// difference from the reference pose. If a position signal does not start at the reference pose, compile() reports an error, because the
+// body would have to jump. The multiplier is the required force or moment on a, for example the braking force.
 #pragma once
 
 #include "mbd/model/model.h"

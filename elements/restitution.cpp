@@ -13,8 +13,8 @@ namespace {
 
 constexpr double k_natural_log_of_ten = 2.302585092994045684;
 
-// Returns −ln e, which increases with ζ. The expression 2ζ·arccos ζ/√(1 − ζ²) continues for ζ > 1 as 2ζ·arcosh ζ/√(ζ² − 1); at ζ = 1 both
-// have the value 2.
+// Returns −ln e for the damping ratio ζ = `ratio`; it increases with ζ. 2ζ·arccos ζ/√(1 − ζ²) continues for ζ > 1 as 2ζ·arcosh ζ/√(ζ² − 1);
+// at ζ = 1 both are 2.
 double log_loss(double ratio) {
   const double square = (1.0 - ratio) * (1.0 + ratio), root = std::sqrt(std::abs(square));
   if (root == 0.0) return 2.0;
@@ -22,14 +22,15 @@ double log_loss(double ratio) {
   return 2.0 * ratio * angle / root;
 }
 
-// Number of coordinates of joined bodies above which dense algebra takes more than a tenth of a second.
+// Number of coordinates of joined bodies above which the effective mass is not computed, because dense algebra would take more than a tenth
+// of a second.
 constexpr std::size_t k_most_coordinates = 600;
-// Relative length of a row's gradient outside the span of the others that counts as rounding.
+// A row is dependent if its gradient has less than this relative length outside the span of the others.
 constexpr double k_dependent = 1e-8;
-// Relative value of J P Jᵀ that counts as zero: joints prevent any motion along the gap.
+// J P Jᵀ below this, relative to J M⁻¹ Jᵀ, counts as zero: joints prevent any motion along the gap.
 constexpr double k_held = 1e-14;
 
-// Bodies that joints and drives connect with given ones, and the rows between them. The ground does not connect.
+// Set of bodies that joints and drives connect with given ones, and the rows between them. Connections through the ground do not count.
 class JoinedBodies {
 public:
   JoinedBodies(const System& system, int a, int b) : system_(system), place_(system.bodies.size(), -1) {
@@ -53,7 +54,7 @@ public:
     return false;
   }
   [[nodiscard]] std::size_t coordinates() const { return 3 * bodies_.size(); }
-  /// Adds M^(−1/2) Jᵀ of a row, or of a part of one, between bodies a and b.
+  /// Adds M^(−1/2) Jᵀ of a row, or of one part of it, between bodies a and b.
   void add_weighed(const RowGradient<double>& gradient, int a, int b, VecX& result) const {
     for (int i = 0; i < 6; ++i) {
       const int body = i < 3 ? a : b;
@@ -80,7 +81,7 @@ double inverse_mass(int index, const double* j, const System& system) {
   return (j[0] * j[0] + j[1] * j[1]) / body.mass + j[2] * j[2] / body.inertia;
 }
 
-// Subtracts from v its component in the span of an orthonormal basis; two passes remove rounding.
+// Subtracts from v its component in the span of an orthonormal basis. The second pass removes the rounding errors of the first.
 void remove_span(const std::vector<VecX>& basis, VecX& v) {
   for (int pass = 0; pass < 2; ++pass)
     for (const VecX& q : basis) v -= q.dot(v) * q;

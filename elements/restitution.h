@@ -25,17 +25,17 @@ namespace steplap {
 /// Returns c, N s/m, for e in (0, 1]; `stiffness` in N/m, effective `mass` in kg.
 [[nodiscard]] double damping_for_restitution(double restitution, double stiffness, double mass);
 /// Returns the effective mass under the joints compiled so far, kg (kg m² if the gap is an angle); infinite if nothing can move along the
-/// gap, NaN if more joined bodies take part than the computation is worth.
+/// gap; NaN if too many joined bodies take part.
 [[nodiscard]] double effective_mass(const RowGradient<double>& gradient, int a, int b, const SystemBuilder& builder);
 
-/// The damper of a contact or stop as a model gives it.
+/// Damping of a contact or stop as given in a model.
 struct GivenDamper {
   double damping = 0.0, stiffness = 0.0;
-  std::optional<double> restitution = {}; ///< instead of `damping`
+  std::optional<double> restitution = {}; ///< coefficient of restitution, given instead of `damping`
 };
 
-/// Returns c of a contact that closes along `measure`: as given, or from its restitution. To be called when the rows of all joints are
-/// compiled. Reports an error if no body can move along it.
+/// Returns c, N s/m, of a contact that closes along `measure`: as given, or from its restitution. Precondition: the rows of all joints are
+/// compiled. Reports an error if no body can move along the measure.
 template <class Measure>
 [[nodiscard]] double contact_damping(const GivenDamper& given, int a, int b, const Measure& measure, SystemBuilder& builder) {
   if (!given.restitution) return given.damping;
@@ -47,7 +47,7 @@ template <class Measure>
   return 0.0;
 }
 
-/// Gives the law of the last entry of `group` its damper by restitution, once the joints are compiled: put(law, c).
+/// Calls put(law, c) for the last entry of `group` once the joints are compiled, with the damping c from its restitution.
 template <class Group, class Measure, class Put>
 void damp_after_joints(Group& group, const GivenDamper& given, int a, int b, const Measure& measure, SystemBuilder& builder, Put put) {
   if (!given.restitution) return;

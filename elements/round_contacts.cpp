@@ -61,7 +61,8 @@ ContactDescription describe_circle(const Element& element, const Model&) {
   ContactDescription contact;
   contact.a = e.a;
   contact.b = e.b;
-  if (!e.inside) contact.depth_limit = e.radius_a + e.radius_b; // deeper, the direction between the circles is lost
+  // Limit of the penetration, at which the direction between the circles is lost.
+  if (!e.inside) contact.depth_limit = e.radius_a + e.radius_b;
   contact.points = [](const Element& circle, const ScenePose& pose) {
     const auto& of = static_cast<const CircleContact&>(circle);
     const Vec2 a = pose.marker(of.a).point, b = pose.marker(of.b).point;

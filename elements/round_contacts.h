@@ -18,19 +18,19 @@ namespace steplap {
 
 class SystemBuilder;
 
-/// Common fields of both kinds.
+/// Fields common to both kinds.
 struct RoundContact : Element {
   std::string a, b = "ground";
   std::string law = "kelvin_voigt";
   double stiffness = 0.0, damping = 0.0;
-  std::optional<double> restitution; ///< replaces damping (restitution.h)
-  double exponent = 1.0;             ///< Hunt–Crossley n
-  double dissipation = 0.0;          ///< Hunt–Crossley α
+  std::optional<double> restitution; ///< coefficient of restitution, replaces damping (restitution.h)
+  double exponent = 1.0;             ///< exponent n of the Hunt–Crossley law
+  double dissipation = 0.0;          ///< Hunt–Crossley α, s/m
 };
 
 struct CircleContact : RoundContact {
   double radius_a = 0.0, radius_b = 0.0;
-  bool inside = false; ///< a is inside b's ring
+  bool inside = false; ///< circle a is inside the ring b
 };
 
 struct SegmentContact : RoundContact {

@@ -1,5 +1,6 @@
-// Distances of circles and segments, for LawGroup. The gap is value − offset, with the radii in the law's offset. The distance is that of
-// a's point p (the circle's centre), through which the force passes. It is undefined at zero distance, a penetration by the whole radius.
+// Distances of circles and segments, as measures for LawGroup. The gap is value − offset; the law's offset contains the radii. The distance
+// is that of a's point p (the circle's centre), through which the force passes. It is undefined at zero distance, a penetration by the
+// whole radius.
 #pragma once
 
 #include "mbd/system/gap_source.h"
@@ -25,7 +26,7 @@ enum class SegmentPart : unsigned char { left, right, from, to };
 
 /// Distance of p from the segment of b that begins at `from` and runs along `tangent`. The gradient is continuous.
 struct SegmentMeasure {
-  Vec2 point_a, from, tangent; ///< in the frames of a, b and b
+  Vec2 point_a, from, tangent; ///< point_a in the frame of a; from, tangent (unit vector) in the frame of b
   double length = 0.0;
 
   [[nodiscard]] Vec2 to() const { return from + length * tangent; }
@@ -56,7 +57,7 @@ struct SegmentMeasure {
 [[nodiscard]] inline Turning turning_of(const InsideMeasure& m) { return {moves_by_turning(m.point_a), moves_by_turning(m.point_b)}; }
 [[nodiscard]] inline Turning turning_of(const SegmentMeasure& m) { return {moves_by_turning(m.point_a), true}; }
 
-/// A circle cannot pass through the ring that encloses it.
+/// Returns the bounds of the gap. A circle cannot pass through the ring that encloses it.
 inline GapBounds gap_bounds(const InsideMeasure& measure, double offset, const Motion<double>& a, const Motion<double>& b) {
   GapBounds bounds = gap_bounds(DistanceMeasure{measure.point_a, measure.point_b}, 0.0, a, b);
   bounds.gap = -bounds.gap - offset;
@@ -65,7 +66,7 @@ inline GapBounds gap_bounds(const InsideMeasure& measure, double offset, const M
   return bounds;
 }
 
-/// `offset` is the radius of the circle plus half the thickness of the segment.
+/// Returns the bounds of the gap. `offset`: radius of the circle plus half the thickness of the segment, m.
 inline GapBounds gap_bounds(const SegmentMeasure& measure, double offset, const Motion<double>& a, const Motion<double>& b) {
   const auto m = measure.at<false, double>(a, b);
   GapBounds bounds;

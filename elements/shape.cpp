@@ -12,7 +12,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_noticeable = 0.01; // relative difference that is reported; dimensions on drawings are not more accurate
+constexpr double k_noticeable = 0.01; // relative difference that is reported; dimensions on drawings are hardly more accurate
 
 // Moments of an area: ∫ dA, ∫ p dA / ∫ dA, ∫ |p − centre|² dA.
 struct Area {
@@ -44,7 +44,8 @@ Area ring(const Ring& corners) {
   return {std::abs(size), origin + centre, std::abs(polar / 12.0) - std::abs(size) * centre.squaredNorm()};
 }
 
-// Returns a polygon for the check whether a hole is inside: with corners on the circle, or slightly outside.
+// Returns a regular polygon for the check whether a hole is inside the outline, with corners on the circle, or (`is_around`) slightly
+// outside.
 Ring circle(const Vec2& centre, double diameter, bool is_around) {
   constexpr int k_sides = 90;
   const double half = std::numbers::pi / k_sides, radius = 0.5 * diameter / (is_around ? portable::cos(half) : 1.0);
@@ -75,7 +76,7 @@ void check_fields(const BodyShape& shape) {
   if (shape.mass && (shape.density || shape.area_density)) fail(shape, "mass", "gives both 'mass' and a density: give one of them");
 }
 
-// Returns the area of a shape. Throws ModelError if it has none.
+// Returns the moments of a shape's area. Throws ModelError if it has none.
 Area area_of(const BodyShape& shape, const Body& body) {
   check_fields(shape);
   const std::vector<Vec2>& outline = shape.outline.empty() ? body.outline : shape.outline;
@@ -148,7 +149,7 @@ void apply_shape(const BodyShape& shape, Model& model) {
   const auto found = std::find_if(model.bodies.begin(), model.bodies.end(), [&](const Body& body) { return body.name == shape.body; });
   if (found == model.bodies.end()) fail(shape, "body", "the ground has no mass: name a body");
   Body& body = *found;
-  if (shapes_of(model, shape.body).front()->name != shape.name) return; // all shapes of a body are applied with its first one
+  if (shapes_of(model, shape.body).front()->name != shape.name) return; // the first shape of a body applies all of them
   const std::optional<MassOfShapes> made = mass_of_shapes(model, body, body.mass);
   const double mass = body.mass > 0.0 ? body.mass : made->mass;
   if (body.mass == 0.0) body.mass = mass;
@@ -186,7 +187,7 @@ std::vector<ShapeRemark> contradicted_shapes(const Model& model) {
     const double inertia = made->inertia * body.mass / made->mass;
     if (std::abs(body.inertia - inertia) > k_noticeable * inertia)
       remarks.push_back({body.where, unlike(body, "inertia", body.inertia, inertia, "kg m²")});
-    const double size = std::sqrt(made->inertia / made->mass); // radius of gyration
+    const double size = std::sqrt(made->inertia / made->mass); // radius of gyration, m
     if ((body.cg - made->centre).norm() > k_noticeable * size)
       remarks.push_back({body.where, "'cg' of body '" + body.name + "', " + point_text(body.cg) +
                                          ", contradicts its shape, whose centre is " + point_text(made->centre) +

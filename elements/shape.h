@@ -10,7 +10,7 @@
 //   thickness = "20 mm"
 //
 // A shape is an area in the body's frame, an outline or a disc, with holes and a uniform mass per area. Shapes of one body add up, even
-// where they overlap. Values that the body gives itself have priority; the rest is computed from its shapes; for a given mass the inertia
+// where they overlap. Values given for the body itself have priority; the others are computed from its shapes. For a given mass the inertia
 // is scaled accordingly. The moments of an area are sums over its edges (Green's theorem):
 //
 //   A = ½ Σ c,  A x = ⅙ Σ (p_x + q_x) c,  J = 1/12 Σ (p·p + p·q + q·q) c,   c = p × q for an edge from p to q,
@@ -28,15 +28,15 @@ namespace steplap {
 
 struct BodyShape : TableObject {
   std::string body;
-  std::vector<Vec2> outline;            ///< m, body frame; empty: outline of the body
+  std::vector<Vec2> outline;            ///< corners in the body frame, m; empty: outline of the body
   Vec2 centre = Vec2::Zero();           ///< centre of a disc, m
   std::optional<double> diameter;       ///< diameter of a disc, m
   std::vector<std::vector<Vec2>> holes; ///< rings of corners, m, in either order
   std::vector<Vec2> hole_centres;       ///< centres of round holes, m
-  std::vector<double> hole_diameters;   ///< m, one for all holes or one for each
-  std::optional<double> density;        ///< kg/m³, requires thickness
-  std::optional<double> thickness;      ///< m
-  std::optional<double> area_density;   ///< kg/m²
+  std::vector<double> hole_diameters;   ///< diameters, m, one for all holes or one for each
+  std::optional<double> density;        ///< density, kg/m³; requires thickness
+  std::optional<double> thickness;      ///< thickness, m
+  std::optional<double> area_density;   ///< mass per area, kg/m²
   std::optional<double> mass;           ///< mass of the shape without its holes, kg
 };
 
@@ -47,8 +47,8 @@ struct MassOfShapes {
   double inertia = 0.0;
 };
 
-/// Returns the sum of all shapes of the body, or nothing if it has none. `given_mass` is the mass of a single shape without mass of its
-/// own. Throws ModelError for invalid shapes, or if a mass is missing.
+/// Returns the sum of all shapes of the body, or nothing if it has none. `given_mass`: mass of the body, for a single shape without a mass
+/// of its own. Throws ModelError for invalid shapes, or if a mass is missing.
 [[nodiscard]] std::optional<MassOfShapes> mass_of_shapes(const Model& model, const Body& body, double given_mass);
 
 /// A contradiction between the values of a body and those of its shapes.

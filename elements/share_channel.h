@@ -1,4 +1,4 @@
-// Channel "share" of dry friction of one dimension: friction force over its bound at the same instant.
+// Channel "share" of one-dimensional dry friction: friction force relative to its bound at the same time.
 #pragma once
 
 #include "mbd/system/slight_force.h"
@@ -8,13 +8,13 @@
 
 namespace steplap {
 
-/// Adds "share" to the element that is being compiled, before its `friction` is added to the builder.
+/// Adds "share" to the element that is being compiled. Precondition: `friction` is the next friction element to be added to the builder.
 ///
 ///   sticks  |λ| / bound, with the static bound of the same evaluation, at most 1
-///   slips   1, unless nothing holds at all
+///   slips   1, or 0 if the bound is zero
 ///   free    0
 ///
-/// A bound below slight_force() is replaced by it: a contact with less normal force carries nothing worth reporting, and its λ is
+/// A bound below slight_force() is replaced by it: a contact with a smaller normal force carries nothing worth reporting, and its λ is
 /// rounding.
 inline void add_share_channel(SystemBuilder& builder, const FrictionElement& friction) {
   const double slight = slight_force(builder.compiled(), *friction.rows({}));
@@ -24,10 +24,10 @@ inline void add_share_channel(SystemBuilder& builder, const FrictionElement& fri
     const double unit_rate = 1.0, bound = self->support(*s.evaluation, state, &unit_rate);
     if (state.phase == FrictionPhase::slip) return bound > 0.0 ? 1.0 : 0.0;
     const double force = std::abs(s.friction_force[slot]);
-    return force > 0.0 ? std::min(1.0, force / std::max(bound, slight)) : 0.0; // λ may pass its bound by rounding
+    return force > 0.0 ? std::min(1.0, force / std::max(bound, slight)) : 0.0; // λ may exceed its bound by rounding
   };
-  // Bounds of the share: at least 0, and at most 1, which it has reached once it has slipped. They save the search for extremes several
-  // evaluations at the kink of each reversal of λ.
+  // Bounds of the channel for the search for extremes: at least 0, and at most 1, which is reached once the element has slipped. They save
+  // several evaluations at the kink of each reversal of λ.
   Channel& channel = builder.add_channel(
       "share", "", {"force over what holds at the same instant; 1 where it slips, 0 without load", "never negative"}, share);
   channel.role = ChannelRole::friction_use;

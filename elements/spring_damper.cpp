@@ -15,7 +15,7 @@ bool is_increasing(const std::vector<Vec2>& table) {
   return true;
 }
 
-// `free` and `table` are the names of the fields.
+// Checks the fields; `free` and `table` are the names of the fields in messages.
 bool check(const SpringDamper& e, SystemBuilder& builder, const std::string& free = "'free_length'",
            const std::string& table = "'force_table'") {
   const auto fails = [&builder](bool is_wrong, const std::string& message) {
@@ -41,7 +41,8 @@ bool check(const SpringDamper& e, SystemBuilder& builder, const std::string& fre
   return !is_bad;
 }
 
-// Value of a channel that is a measure less `zero`, or its rate. A distance in space is no row, so no formula of a force may use it.
+// Returns the value of a channel that shows a measure minus `zero`, or its rate. A distance in space is not a row, so formulas of forces
+// cannot use it.
 template <class Measure>
 auto measured_value(std::function<double(const Snapshot&)> shown, int a, int b, const Measure& measure, double zero, bool is_rate) {
   if constexpr (requires { row_of(a, b, measure); }) return MeasuredValue{std::move(shown), row_of(a, b, measure), zero, is_rate};
@@ -103,7 +104,7 @@ void compile_spring_damper(const Element& element, SystemBuilder& builder) {
 
 void compile_rotational(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const RotationalSpringDamper&>(element);
-  SpringDamper same; // along another coordinate
+  SpringDamper same; // checked as a spring along a coordinate, with the same values
   same.stiffness = e.stiffness;
   same.damping = e.damping;
   same.free_length = e.free_angle;

@@ -11,28 +11,28 @@ namespace steplap {
 
 struct SpringDamper : Element {
   std::string a, b = "ground";
-  std::optional<Vec2> axis; ///< in marker b's axes; not given: point to point
-  double across = 0.0;      ///< distance of its ends across the plane, m
+  std::optional<Vec2> axis; ///< direction of the spring in marker b's axes; not given: the line between the markers
+  double across = 0.0;      ///< distance of the ends across the plane, m
   double stiffness = 0.0, damping = 0.0;
   std::optional<double> free_length; ///< value of the measure at zero force, m
-  std::optional<double> preload;     ///< f in the reference pose, N
+  std::optional<double> preload;     ///< force f in the reference pose, N
   double gap = 0.0;                  ///< width of the dead band around the free length, m
-  std::vector<Vec2> force_table;     ///< (δ, −f), replaces stiffness
-  std::vector<Vec2> damping_table;   ///< (δ̇, −f), replaces damping
+  std::vector<Vec2> force_table;     ///< points (δ, −f), replace stiffness
+  std::vector<Vec2> damping_table;   ///< points (δ̇, −f), replace damping
   std::string between = "lines";     ///< interpolation of the tables: "lines", whose kinks are events, or "curve"
   long count = 1;
 };
 
-/// The same for the relative angle of two bodies.
+/// The corresponding spring and damper for the relative angle of two bodies.
 struct RotationalSpringDamper : Element {
   std::string a, b = "ground";
   double stiffness = 0.0, damping = 0.0;
   std::optional<double> free_angle;
   std::optional<double> preload;
   double gap = 0.0;                ///< width of the dead band around the free angle, rad
-  std::vector<Vec2> couple_table;  ///< (δ, −moment), replaces stiffness
-  std::vector<Vec2> damping_table; ///< (δ̇, −moment), replaces damping
-  std::string between = "lines";   ///< as for SpringDamper
+  std::vector<Vec2> couple_table;  ///< points (δ, −moment), replace stiffness
+  std::vector<Vec2> damping_table; ///< points (δ̇, −moment), replace damping
+  std::string between = "lines";   ///< interpolation of the tables: "lines" or "curve"
   long count = 1;
 };
 

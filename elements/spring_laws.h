@@ -83,7 +83,7 @@ public:
         std::upper_bound(points_.begin() + 1, points_.end() - 1, x, [](double value, const Vec2& p) { return value < p.x(); });
     return static_cast<int>(after - points_.begin()) - 1;
   }
-  /// Returns the segment after `segment` on one side. If x has jumped several segments are skipped.
+  /// Returns the segment that contains x, on the given side of `segment`. If x has jumped, several segments are skipped.
   [[nodiscard]] int segment_beyond(int segment, bool is_above, double x) const {
     const int now = segment_at(x);
     return is_above ? std::min(std::max(segment + 1, now), segments() - 1) : std::max(std::min(segment - 1, now), 0);
@@ -157,11 +157,11 @@ private:
   struct Coefficients {
     double slope = 0.0, cubic = 0.0; ///< y′ at the left end of the piece; y‴/6
   };
-  // Computes y″ at the points from the continuity of y′, a tridiagonal system.
+  // Computes y″ at the points: continuity of y′ gives a tridiagonal system.
   void find_curvatures() {
     const std::size_t n = points_.size();
     curvature_.assign(n, 0.0);
-    std::vector<double> above(n, 0.0); // remaining upper diagonal
+    std::vector<double> above(n, 0.0); // upper diagonal after elimination
     for (std::size_t i = 1; i + 1 < n; ++i) {
       const double left = points_[i].x() - points_[i - 1].x(), right = points_[i + 1].x() - points_[i].x();
       const double bend = (points_[i + 1].y() - points_[i].y()) / right - (points_[i].y() - points_[i - 1].y()) / left;
@@ -186,7 +186,7 @@ private:
         std::upper_bound(points_.begin() + 1, points_.end() - 1, x, [](double value, const Vec2& p) { return value < p.x(); });
     return static_cast<std::size_t>(after - points_.begin()) - 1;
   }
-  /// Returns ∫ y dx over the first d of piece i.
+  /// Returns ∫ y dx from the left end of piece i over the length d.
   [[nodiscard]] double from_left(std::size_t i, double d) const {
     const Coefficients c = coefficients(i);
     return d * (points_[i].y() + d * (c.slope / 2.0 + d * (curvature_[i] / 6.0 + d * c.cubic / 4.0)));
@@ -215,10 +215,10 @@ struct SmoothSpring {
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode) const {
     return S(-count) * (spring.value(value - S(free)) + damper.value(rate));
   }
-  // For double only, since a tape could not record the choice of the piece.
+  // Only for double, because a tape cannot record the choice of the piece.
   [[nodiscard]] double elastic_force(double value, UnitMode) const { return -count * spring.value(value - free); }
   [[nodiscard]] double energy(double value) const { return count * spring.integral(value - free); }
-  /// Returns the knots of the curve over the relative angle.
+  /// Returns the points of the curve as knots of the relative angle.
   [[nodiscard]] std::vector<TurnKnots> knots() const {
     TurnKnots knots{-free, {}};
     for (const Vec2& point : spring.points()) knots.at.push_back(point.x());

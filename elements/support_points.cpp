@@ -8,17 +8,17 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_flat = 0.02; // rad; largest angle between faces in full contact
+constexpr double k_flat = 0.02; // largest angle, rad, between faces in full contact
 constexpr double k_endless = std::numeric_limits<double>::infinity();
 
 struct Support {
-  double gap = -k_endless; ///< of the supporting face, m
+  double gap = -k_endless; ///< gap of the supporting face, m
   Vec2 normal, origin;
-  double low = 0.0, high = 0.0; ///< ends of the touching part, along the face
+  double low = 0.0, high = 0.0; ///< ends of the touching part along the face, m
   bool is_of_a = false;         ///< the face belongs to a
 };
 
-// Takes the face with outward normal n if `other` penetrates it less than the best face so far.
+// Stores the face with outward normal n in `best` if `other` penetrates it less than the best face so far.
 void try_face(const Vec2& n, const Vec2& origin, double from, double to, const std::vector<Vec2>& other, bool is_of_a, Support& best) {
   const Vec2 along(n.y(), -n.x());
   std::size_t lowest = 0;
@@ -61,7 +61,7 @@ std::vector<ContactPoint> support_points(const std::vector<Vec2>& a, const std::
   const Vec2 normal = best.is_of_a ? Vec2(-best.normal) : best.normal;
   const ContactPoint low{on_face + best.low * along, normal}, high{on_face + best.high * along, normal};
   if (best.high - best.low <= 0.0) return {low};
-  return along.x() >= 0.0 ? std::vector{low, high} : std::vector{high, low}; // from left to right
+  return along.x() >= 0.0 ? std::vector{low, high} : std::vector{high, low}; // ordered from left to right
 }
 
 } // namespace steplap

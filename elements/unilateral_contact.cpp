@@ -33,7 +33,7 @@ GivenDamper damper_of(const UnilateralContact& e) {
   return {n * e.damping, n * e.stiffness, e.restitution};
 }
 
-// Sets the damping of the contact that was just added to `group`.
+// Sets the damping of the contact added last to `group`.
 template <class Group> void damp(Group& group, const UnilateralContact& e, const ContactGeometry& g, SystemBuilder& builder) {
   const auto put = [](KelvinVoigtContact& law, double c) { law.c = c; };
   damp_after_joints(group, damper_of(e), g.a, g.b, g.gap, builder, put);
@@ -93,7 +93,7 @@ ContactDescription describe(const Element& element, const Model& model) {
   contact.b = e.b;
   contact.standing = ContactDescription::Standing::a;
   contact.is_preloaded = e.preload || e.interference;
-  if (!e.ends) contact.depth_limit = thickness_behind(model, e.b, e.normal); // beyond the end of a face the depth has no meaning
+  if (!e.ends) contact.depth_limit = thickness_behind(model, e.b, e.normal); // beyond the end of a face a penetration has no limit
   contact.points = [](const Element& foot, const ScenePose& pose) {
     const auto& of = static_cast<const UnilateralContact&>(foot);
     return std::vector<ContactPoint>{{pose.marker(of.a).point, rotated(of.normal, pose.marker(of.b).angle).normalized()}};
@@ -101,7 +101,7 @@ ContactDescription describe(const Element& element, const Model& model) {
   return contact;
 }
 
-// Adds the contact with its law.
+// Adds the contact, with its law, to the builder.
 void add_contact(const UnilateralContact& e, SystemBuilder& builder) {
   const ContactGeometry g = contact_geometry(e, builder);
   const Motion<double>&a = builder.reference(g.a), &b = builder.reference(g.b);
@@ -115,7 +115,7 @@ void add_contact(const UnilateralContact& e, SystemBuilder& builder) {
   if (e.gap) offset = now - *e.gap;
   if (e.interference) offset = now + *e.interference;
   if (e.preload) offset = now + portable::pow(*e.preload / k, 1.0 / e.exponent);
-  const double c = n * e.damping; // a restitution sets it when the joints are known
+  const double c = n * e.damping; // if a restitution is given, damp() replaces c when the joints are known
   const KelvinVoigtContact kelvin_voigt{k, c, offset};
   if (e.ends) {
     if (e.law == "literal") add_ended(g, *e.ends, AdhesiveKelvinVoigtContact{k, c, offset}, builder);
@@ -126,7 +126,7 @@ void add_contact(const UnilateralContact& e, SystemBuilder& builder) {
   if (e.law == "literal") add(g, g.gap, AdhesiveKelvinVoigtContact{k, c, offset}, builder);
   else if (e.law == "hunt_crossley") add(g, g.gap, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
   else if (g.gap.is_axis_in_a) damp(add(g, g.gap, kelvin_voigt, builder), e, g, builder);
-  else // forces along n through p_A and through the tip have the same line of action
+  else // the force along n has the same line of action through p_A as through the tip
     with_cheapest(AxisMeasure{g.gap.point_a, g.gap.point_b, g.gap.normal},
                   [&](const auto& measure) { damp(add(g, measure, kelvin_voigt, builder), e, g, builder); });
 }

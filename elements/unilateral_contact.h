@@ -19,13 +19,13 @@ struct UnilateralContact : Element {
   std::optional<Vec2> axis; ///< contact axis in marker a's axes; not given: the normal
   double stiffness = 0.0, damping = 0.0;
   std::string law = "kelvin_voigt";
-  std::optional<double> restitution;  ///< replaces damping (restitution.h)
-  double exponent = 1.0;              ///< Hunt–Crossley n
-  double dissipation = 0.0;           ///< Hunt–Crossley α
+  std::optional<double> restitution;  ///< coefficient of restitution, replaces damping (restitution.h)
+  double exponent = 1.0;              ///< exponent n of the Hunt–Crossley law
+  double dissipation = 0.0;           ///< Hunt–Crossley α, s/m
   std::optional<double> preload;      ///< force in the reference pose, N
-  std::optional<double> interference; ///< −δ in the reference pose, m
-  std::optional<double> gap;          ///< δ in the reference pose, m
-  std::optional<Vec2> ends;           ///< ends of the face, m, along it from marker b (ended_contact.h)
+  std::optional<double> interference; ///< penetration −δ in the reference pose, m
+  std::optional<double> gap;          ///< gap δ in the reference pose, m
+  std::optional<Vec2> ends;           ///< coordinates of the ends along the face from marker b, m (ended_contact.h)
   long count = 1;
 };
 
@@ -35,7 +35,8 @@ struct ContactGeometry {
   GapMeasure gap;
 };
 [[nodiscard]] ContactGeometry contact_geometry(const UnilateralContact& contact, const SystemBuilder& builder);
-/// Returns c, N s/m, of all its parallel elements: as given, or from its restitution. Reports an error if that is impossible.
+/// Returns the total damping c, N s/m, of all parallel elements of the contact: as given, or from its restitution. Reports an error if that
+/// is impossible.
 [[nodiscard]] double damping_of(const UnilateralContact& contact, const ContactGeometry& geometry, SystemBuilder& builder);
 
 [[nodiscard]] const ElementKind& unilateral_contact_kind();

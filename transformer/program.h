@@ -1,5 +1,5 @@
-// The kinds of the programs, and models loaded with them. Programs on the library may hand a catalogue of their own to the functions of
-// mbd/run/loaded_model.h.
+// Loads models with all kinds of elements, tables and signals of the programs. Programs that use the library may instead pass a catalogue
+// of their own to the functions of mbd/run/loaded_model.h.
 #pragma once
 
 #include "mbd/run/loaded_model.h"
@@ -13,12 +13,12 @@ namespace steplap {
 /// Returns the catalogue of all kinds of elements, tables and signals. It is created at first use and lives until the program ends.
 [[nodiscard]] const RunCatalogue& program_catalogue();
 
-// As the functions of the same names in mbd/run/loaded_model.h, with the kinds of program_catalogue().
+// Functions of the same names as in mbd/run/loaded_model.h, with the kinds of program_catalogue(). Errors are thrown as described there.
 
 /// Reads and compiles a model file.
 [[nodiscard]] std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std::vector<std::string>& overrides = {});
-/// As above with other kinds, such as transformer_catalog() and kinds of your own. Kinds unknown to program_catalogue() are drawn by their
-/// markers.
+/// Reads and compiles a model file with other kinds, such as transformer_catalog() and kinds of your own. Kinds unknown to
+/// program_catalogue() are drawn by their markers.
 [[nodiscard]] std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std::vector<std::string>& overrides,
                                                             const Catalogue& kinds);
 /// Reads and compiles a model from its text. `path` is its name in messages.

@@ -16,8 +16,9 @@ namespace {
 
 using Group = SlidingBandGroup;
 
-constexpr double k_shortest = 1e-6;    // smallest length of a free part, relative to its length in the reference pose; as for ropes
-constexpr double k_least_angle = 1e-6; // rad: with a smaller wrap angle the band does not touch its drum
+// Smallest length of a free part, relative to its length in the reference pose; equal to that of ropes.
+constexpr double k_shortest = 1e-6;
+constexpr double k_least_angle = 1e-6; // smallest wrap angle, rad; below it the band does not touch its drum
 
 bool is_followed(SystemBuilder& builder) {
   const std::string& integrator = builder.model().simulation.integrator;
@@ -29,7 +30,7 @@ bool is_followed(SystemBuilder& builder) {
   return true;
 }
 
-// Returns false and reports an error if the centres are too close for a common tangent, that is not further apart than c.
+// Returns false and reports an error if the distance of the centres is at most c, so that no common tangent exists.
 bool has_tangent(const CompiledMarker& wheel, const CompiledMarker& end, double c, const char* what, SystemBuilder& builder) {
   const double apart = (builder.marker_position(end) - builder.marker_position(wheel)).norm();
   if (apart > c && apart > 1e-12) return true;
@@ -48,8 +49,8 @@ Group::Part part_of(int drum, const CompiledMarker& end, const WoundMeasure& mea
   return part;
 }
 
-// Sets the elongations at zero load so that in the reference pose both parts have the given pretension, or the band the given slack. The
-// slack is shared by the parts like an elongation, as if by an equal negative tension.
+// Sets the free lengths so that in the reference pose both parts have the given pretension, or the band the given slack. The slack is
+// distributed over the parts like an elongation by an equal negative tension.
 void set_free_lengths(Group::ElementData& entry, const std::optional<double>& pretension, const std::optional<double>& slack) {
   const double k0 = entry.parts[0].stiffness, k1 = entry.parts[1].stiffness;
   const double pull = pretension ? *pretension : -slack.value_or(0.0) * k0 * k1 / (k0 + k1);
@@ -107,8 +108,8 @@ void compile_band(const Element& element, SystemBuilder& builder) {
   entry.time = e.damping / e.stiffness;
   entry.parts[0] = part_of(drum.body, a, {drum.point, a.point, e.radius, 0.0}, e.stiffness, builder);
   entry.parts[1] = part_of(drum.body, b, {drum.point, b.point, -e.radius, 0.0}, e.stiffness_b.value_or(e.stiffness), builder);
-  // Wrap angle between the points where the band reaches and leaves the drum. The radii there are perpendicular to the free parts, so the
-  // angle between radii follows from the directions of the parts.
+  // The wrap angle is the angle between the radii to the points where the band reaches and leaves the drum. These radii are perpendicular
+  // to the free parts, so the angle follows from the directions of the parts.
   const Vec2 &first = entry.parts[0].measure.start, &second = entry.parts[1].measure.start;
   const double between = sense * portable::atan2(first.x() * second.y() - first.y() * second.x(), first.dot(second)) - std::numbers::pi;
   constexpr double k_turn = 2.0 * std::numbers::pi;

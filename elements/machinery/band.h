@@ -11,25 +11,25 @@
 namespace steplap {
 
 struct Band : Element {
-  std::string a, b = "ground", drum = "ground"; ///< ends; centre of the drum
+  std::string a, b = "ground", drum = "ground"; ///< markers of the ends; marker at the centre of the drum
   double radius = 0.0;                          ///< radius of the drum, m; negative if the band runs clockwise around it from a to b
   long turns = 0;                               ///< whole turns in addition to the angle between the free parts
   double friction = 0.0;                        ///< coefficient of friction μ
   double stiffness = 0.0;                       ///< stiffness of the part at a, N/m
   std::optional<double> stiffness_b;            ///< stiffness of the part at b, N/m; default: as at a
-  double damping = 0.0;                         ///< N s/m, of the part at a; at b in proportion to the stiffness
-  std::optional<double> pretension, slack;      ///< N, m, in the reference pose
-  std::string source;                           ///< origin of the friction; results name it where that is unusual
+  double damping = 0.0;                    ///< damping of the part at a, N s/m; that of the part at b has the same ratio to the stiffness
+  std::optional<double> pretension, slack; ///< tension, N, or slack, m, in the reference pose
+  std::string source;                      ///< origin of the friction coefficient, quoted in results where it is unusual
 };
 
 struct Belt : Element {
-  std::string a, b = "ground";           ///< centres of the wheels
-  double radius_a = 0.0, radius_b = 0.0; ///< m
+  std::string a, b = "ground";           ///< markers at the centres of the wheels
+  double radius_a = 0.0, radius_b = 0.0; ///< radii of the wheels, m
   bool crossed = false;
-  double friction_a = 0.0, friction_b = 0.0; ///< μ
-  double stiffness = 0.0, damping = 0.0;     ///< of each free part, N/m and N s/m
-  std::optional<double> pretension, slack;   ///< N, m, in the reference pose
-  std::string source;                        ///< origin of the friction; results name it where that is unusual
+  double friction_a = 0.0, friction_b = 0.0; ///< coefficients of friction μ
+  double stiffness = 0.0, damping = 0.0;     ///< stiffness, N/m, and damping, N s/m, of each free part
+  std::optional<double> pretension, slack;   ///< tension, N, or slack, m, in the reference pose
+  std::string source;                        ///< origin of the friction coefficients, quoted in results where they are unusual
 };
 
 [[nodiscard]] const ElementKind& band_kind();

@@ -17,22 +17,22 @@ namespace {
 
 struct Material {
   const char* name;
-  double modulus, density; ///< Pa, kg/m³
+  double modulus, density; ///< Young's modulus, Pa; density, kg/m³
 };
 
 constexpr std::array<Material, 2> k_materials = {{
-    {"steel", 210e9, 7850.0},    // EN 1993-1-1, 3.2.6; EN 1991-1-1, A.4
-    {"aluminium", 70e9, 2700.0}, // EN 1999-1-1, 3.2.5
+    {"steel", 210e9, 7850.0},    // sources: EN 1993-1-1, 3.2.6; EN 1991-1-1, A.4
+    {"aluminium", 70e9, 2700.0}, // source: EN 1999-1-1, 3.2.5
 }};
 
 /// All values of a beam, given or computed.
 struct BeamValues {
-  double length = 0.0; ///< m
+  double length = 0.0; ///< length, m
   Vec2 along = Vec2::UnitX();
-  double modulus = 0.0;    ///< Pa
-  double per_length = 0.0; ///< kg/m
+  double modulus = 0.0;    ///< Young's modulus, Pa
+  double per_length = 0.0; ///< mass per length, kg/m
   SectionValues section;
-  double damping_time = 0.0; ///< s
+  double damping_time = 0.0; ///< τ, s: dampers have τ times the stiffness
 };
 
 // Expands one [[beam]]; collects all errors before it reports them.
@@ -46,8 +46,8 @@ public:
     find_material();
     find_damping();
     if (!problems_.empty())
-      values_ = {1.0, Vec2::UnitX(), 1.0, 1.0, {1.0, 1.0, 1.0}, 0.0}; // dummy values, so that references to the beam cause no
-                                                                      // further errors
+      // Dummy values, so that references to the beam cause no further errors.
+      values_ = {1.0, Vec2::UnitX(), 1.0, 1.0, {1.0, 1.0, 1.0}, 0.0};
     for (long i = 0; i <= beam_.segments; ++i) add_segment(i);
     for (long i = 1; i <= beam_.segments; ++i) add_part(i);
     add_marker("start", 0, Vec2::Zero());
@@ -83,7 +83,7 @@ void BeamMaker::find_place() {
   values_.along = way / values_.length;
 }
 
-// From a shape or from values; the height is for drawings only.
+// Sets the section, given as a shape or as values; the height is used only for drawings.
 void BeamMaker::find_section() {
   const int shapes = int{!beam_.profile.empty()} + int{beam_.width || beam_.height} + int{beam_.diameter || beam_.wall};
   const bool has_values = beam_.area || beam_.second_moment;
@@ -220,7 +220,7 @@ const TableKind& beam_kind() {
     f.add("damping_frequency", &T::damping_frequency).in("Hz").positive().doc("where damping_ratio holds, for one that of the first mode");
     k.holds<T>();
     k.reads_masses = k.reads_elements = false;
-    k.apply = [](const Element&, Model&) {}; // it adds only bodies and the elements between them
+    k.apply = [](const Element&, Model&) {}; // nothing to apply later: the table only adds bodies and elements
     return k;
   }();
   return kind;

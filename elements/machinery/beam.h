@@ -16,16 +16,16 @@ namespace steplap {
 /// One entry of [[beam]]. The beam "deck" has the bodies "deck.0" … "deck.n", the parts "deck.part 1" … "deck.part n", and the end markers
 /// "deck.start" and "deck.end", whose x axes point along the beam.
 struct Beam : BodyBuilder {
-  Vec2 from = Vec2::Zero(), to = Vec2::Zero();                 ///< m
-  std::string frame = "ground";                                ///< axes of from and to; in a part of a file those of the part
-  long segments = 10;                                          ///< n
-  std::optional<double> modulus, second_moment, area, density; ///< E, I, A, ρ, SI units
-  std::optional<double> mass_per_length;                       ///< kg/m, including dead load; replaces ρ
-  std::string material, profile;                               ///< "steel", "IPE 300"
-  std::optional<double> width, height;                         ///< rectangular section, m
-  std::optional<double> diameter, wall;                        ///< round section, m: outer diameter and wall
-  std::optional<double> shear_stiffness;                       ///< G A_s, N; not given: no shear deformation
-  std::optional<double> damping_time;                          ///< τ, s
+  Vec2 from = Vec2::Zero(), to = Vec2::Zero(); ///< ends of the beam, m
+  std::string frame = "ground";                ///< frame of `from` and `to`; inside a part of a file it is the frame of that part
+  long segments = 10;                          ///< number n of elastic parts
+  std::optional<double> modulus, second_moment, area, density; ///< E, Pa; I, m⁴; A, m²; ρ, kg/m³
+  std::optional<double> mass_per_length;                       ///< mass per length, kg/m, including dead load; replaces ρ
+  std::string material, profile;                               ///< names such as "steel", "IPE 300"
+  std::optional<double> width, height;                         ///< dimensions of a rectangular section, m
+  std::optional<double> diameter, wall;                        ///< round section, m: outer diameter, wall thickness
+  std::optional<double> shear_stiffness;                       ///< shear stiffness G A_s, N; not given: no shear deformation
+  std::optional<double> damping_time;                          ///< damping time τ, s
   std::optional<double> damping_ratio, damping_frequency;      ///< damping ratio at a frequency in Hz, replaces τ
 
   void add_bodies(Model& model) const override;

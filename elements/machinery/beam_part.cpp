@@ -13,7 +13,7 @@ namespace {
 struct PartEntry {
   int a = k_ground, b = k_ground;
   Vec2 point_a, point_b, axis; ///< positions of the markers; unit vector along the beam in the frame of b
-  double angle = 0.0;          ///< θ_A − θ_B at zero load
+  double angle = 0.0;          ///< θ_A − θ_B without load, rad
   double k_x = 0.0, k_v = 0.0, k_theta = 0.0, time = 0.0;
   double by_v = 0.0, by_theta = 0.0; ///< coefficients of v² and θ² in q
   int link = 0;
@@ -21,7 +21,7 @@ struct PartEntry {
 
 /// Coordinates of the part, and the internal forces along them.
 template <class S> struct PartState {
-  S u{0}, v{0}, theta{0}, c{1}, s{0}; ///< c, s: of half of θ
+  S u{0}, v{0}, theta{0}, c{1}, s{0}; ///< c, s: cosine and sine of θ/2
   S q{0}, q_rate{0}, v_rate{0}, theta_rate{0};
   S tension{0}, shear{0}, moment{0};
   Pair<S> x_axis, lever_a, lever_b; ///< axis of b's marker; levers from the centres to marker a
@@ -55,7 +55,7 @@ template <class S, class B> PartState<S> state_of(const PartEntry& entry, const 
   return p;
 }
 
-/// Force on a at its marker, and the moment on it.
+/// Force on a at its marker, and moment on a.
 template <class S> struct PartWrench {
   Pair<S> force;
   S couple{0};
@@ -65,7 +65,7 @@ template <class S> PartWrench<S> wrench_of(const PartEntry& entry, const PartSta
   const S f_u = -p.tension, f_v = -p.shear - S(2.0 * entry.by_v) * p.tension * p.v;
   const S f_theta = -p.moment + S(2.0 * entry.by_theta) * p.tension * p.theta;
   const Pair<S> y = perp(p.x_axis);
-  // u and v rotate with half of θ: ∂u/∂θ = v/2, ∂v/∂θ = −u/2.
+  // The axes rotate with θ/2: ∂u/∂θ = v/2, ∂v/∂θ = −u/2.
   return {(p.c * f_u - p.s * f_v) * p.x_axis + (p.s * f_u + p.c * f_v) * y, f_theta + S(0.5) * (f_u * p.v - f_v * p.u)};
 }
 

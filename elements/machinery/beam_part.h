@@ -18,13 +18,13 @@
 namespace steplap {
 
 struct BeamPart : Element {
-  std::string a, b = "ground";           ///< coincident markers in its middle, on the bodies of either node
+  std::string a, b = "ground";           ///< coincident markers in the middle of the part, on the bodies of the two nodes
   Vec2 axis = Vec2::UnitX();             ///< unit vector along the beam towards a, in b's axes
-  double length = 0.0;                   ///< h, m
-  double axial_stiffness = 0.0;          ///< E A, N
-  double bending_stiffness = 0.0;        ///< E I, N m²
-  std::optional<double> shear_stiffness; ///< G A_s, N; not given: no shear deformation
-  double damping_time = 0.0;             ///< τ, s
+  double length = 0.0;                   ///< length h, m
+  double axial_stiffness = 0.0;          ///< axial stiffness E A, N
+  double bending_stiffness = 0.0;        ///< bending stiffness E I, N m²
+  std::optional<double> shear_stiffness; ///< shear stiffness G A_s, N; not given: no shear deformation
+  double damping_time = 0.0;             ///< damping time τ, s
 };
 
 [[nodiscard]] const ElementKind& beam_part_kind();

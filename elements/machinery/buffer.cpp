@@ -15,19 +15,19 @@ namespace {
 
 using CurveGroup = LawGroup<AxisMeasure, TabulatedSpring>;
 
-// Friction whose bound is half of the distance between the curves. The bound and the spring's table have the same corners, which are
-// changes of the spring's mode; for a given mode both are linear.
+// Friction of a buffer, with a bound of half the distance between its curves. Bound and spring table have the same corners, which are
+// changes of the spring's mode; within a mode both are linear.
 class BufferFriction final : public BoundedFriction {
 public:
   RowSpec row;
-  PiecewiseLinear bound; ///< bound, N, as a function of the change of the row since the buffer was free, as in the spring's table
+  PiecewiseLinear bound; ///< bound, N, as a function of the row's change since first contact, like the spring table
   double free = 0.0;     ///< value of the row at first contact, m
-  int unit = 0;          ///< unit of the spring
+  int unit = 0;          ///< index of the spring's unit
 
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
-    return TabulatedSpring::spring_segment(e.mode[unit]) < bound.segments() - 1; // the last segment is that of the open buffer
+    return TabulatedSpring::spring_segment(e.mode[unit]) < bound.segments() - 1; // the last segment is the open buffer
   }
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double*, double* wrench) const override {
     wrench[0] = -state.sign * bound_at<double>(e);
@@ -52,7 +52,7 @@ public:
   }
 
 private:
-  // Continued linearly beyond the ends of the segment, like the spring, so that a step beyond the end meets no corner.
+  // Returns the bound, continued linearly beyond the ends of the segment like the spring, so that a step beyond an end sees no corner.
   template <class S> [[nodiscard]] S bound_at(const EvaluationData<S>& e) const {
     const S value = evaluate_row<false>(row, e.motion[row.a], e.motion[row.b]).value;
     return bound.value(value - S(free), TabulatedSpring::spring_segment(e.mode[unit]));
@@ -62,7 +62,7 @@ private:
   }
 };
 
-// Linear interpolation, continued beyond the last point.
+// Interpolates linearly; continues beyond the last point with the slope of the last segment.
 double value_at(const std::vector<Vec2>& curve, double depth) {
   const auto next = std::find_if(curve.begin() + 1, curve.end() - 1, [depth](const Vec2& p) { return depth <= p.x(); });
   const Vec2 &low = *std::prev(next), &high = *next;
@@ -73,12 +73,13 @@ struct Curves {
   const std::vector<Vec2>&loading, &unloading;
 
   [[nodiscard]] double pressed_in(double depth) const { return value_at(loading, depth); }
-  /// Beyond its last point the unloading curve keeps its distance from the loading curve, so that they do not cross.
+  /// Returns the unloading force at a depth. Beyond its last point the unloading curve keeps its distance from the loading curve, so that
+  /// they do not cross.
   [[nodiscard]] double let_go(double depth) const {
     const Vec2& last = unloading.back();
     return depth > last.x() ? pressed_in(depth) - (pressed_in(last.x()) - last.y()) : value_at(unloading, depth);
   }
-  /// Returns the depths of the corners of both curves, from beyond the deepest to first contact.
+  /// Returns the depths of the corners of both curves, in descending order, ending with first contact.
   [[nodiscard]] std::vector<double> corners() const {
     std::vector<double> depths;
     for (const std::vector<Vec2>* curve : {&loading, &unloading})
@@ -121,7 +122,7 @@ bool check(const Buffer& e, const std::vector<Vec2>& unloading, SystemBuilder& b
   }
   if (!is_curve(e.loading, "loading", builder) || !is_curve(unloading, "unloading", builder)) return false;
   const Curves curves{e.loading, unloading};
-  for (const double depth : curves.corners()) // both are linear between corners
+  for (const double depth : curves.corners()) // corners of both curves suffice, because both are linear in between
     if (!(curves.let_go(depth) <= curves.pressed_in(depth))) {
       builder.error("'unloading' lies above 'loading' at a depth of " + rounded_text(depth) +
                     " m, where it would give back more than it took");
@@ -141,7 +142,7 @@ void compile_buffer(const Element& element, SystemBuilder& builder) {
   const double free = now - e.gap, n = static_cast<double>(e.count);
   const Curves curves{e.loading, unloading};
   const std::vector<double> depths = curves.corners();
-  // The force of a spring is the negative value of its table.
+  // The tables contain negative forces, because a spring exerts the negative value of its table.
   const PiecewiseLinear middle = table(depths, [&](double d) { return -0.5 * n * (curves.pressed_in(d) + curves.let_go(d)); });
   const PiecewiseLinear without({{-1.0, 0.0}, {1.0, 0.0}});
 

@@ -15,10 +15,10 @@ namespace steplap {
 
 struct Buffer : Element {
   std::string a, b = "ground";
-  Vec2 axis{1.0, 0.0};         ///< in marker b's axes: direction in which a is pushed away
-  std::vector<Vec2> loading;   ///< (d, force), m and N, beginning with (0, 0)
-  std::vector<Vec2> unloading; ///< the same for decreasing d; empty: as loading
-  double gap = 0.0;            ///< m, in the reference pose; negative: compressed
+  Vec2 axis{1.0, 0.0};         ///< direction in which a is pushed away, in marker b's axes
+  std::vector<Vec2> loading;   ///< loading curve: (d, force), m and N, beginning with (0, 0)
+  std::vector<Vec2> unloading; ///< unloading curve, for decreasing d; empty: equal to `loading`
+  double gap = 0.0;            ///< gap in the reference pose, m; negative: compressed
   long count = 1;
 };
 

@@ -19,9 +19,9 @@ namespace {
 
 struct CamEntry {
   int a = k_ground, b = k_ground, cam = k_ground;
-  AxisMeasure measure; ///< of a relative to b
+  AxisMeasure measure; ///< displacement of a relative to b along the axis
   LiftCurve curve;
-  double zero = 0.0; ///< φ for θ_cam = θ_b
+  double zero = 0.0; ///< φ for θ_cam = θ_b, rad
   KelvinVoigtContact law = {};
   bool holds = false;
   int unit = 0, first_event = 0;
@@ -31,8 +31,8 @@ struct CamEntry {
 
 /// Gap, its rate, and the effect of a unit force.
 template <class S> struct CamGap {
-  MeasureValue<S> m;             ///< of the follower alone
-  S value{0}, rate{0}, slope{0}; ///< slope is h'
+  MeasureValue<S> m;             ///< measure of the follower, without the lift
+  S value{0}, rate{0}, slope{0}; ///< slope: h′, m/rad
 };
 
 double with_slope(double, double value, double) { return value; }
@@ -138,7 +138,7 @@ public:
 private:
   [[nodiscard]] const ElementData& entry_at(int element) const { return entries[static_cast<std::size_t>(element)]; }
   static UnitMode mode_of(const ElementData& entry, const Evaluation& e) { return entry.holds ? k_contact_pressed : e.mode[entry.unit]; }
-  // The rounding error of the lift is that of the angle, which may be many turns.
+  // Includes the rounding error of the lift by that of the angle, which may be many turns.
   static double rounding_of(const ElementData& entry, const CamGap<double>& gap, const Evaluation& e) {
     const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b], &cam = e.motion[entry.cam];
     return value_rounding(gap.m, a, b) +
@@ -146,9 +146,9 @@ private:
   }
 };
 
-// Adds the last point of a periodic table, which repeats the first after a whole turn and is often omitted: for a table in equal intervals
-// with one interval missing, and for a table whose last lift equals the first if the gap is no wider than its intervals. Returns nothing
-// otherwise.
+// Returns the points with the last point of a periodic table, which repeats the first one a whole turn later and is often omitted. It is
+// added to a table with equal intervals of which one is missing, and to a table whose last lift equals the first if the gap is no wider
+// than its intervals. Returns nothing for other tables.
 std::optional<std::vector<Vec2>> closed_turn(std::vector<Vec2> points) {
   constexpr double k_digits = 1e-3; // angles and lifts are given with at least three digits
   double widest = 0.0, narrowest = std::numeric_limits<double>::infinity(), low = points.front().y(), high = low;
@@ -167,7 +167,7 @@ std::optional<std::vector<Vec2>> closed_turn(std::vector<Vec2> points) {
   return points;
 }
 
-// Returns the lift curve, or nothing after an error.
+// Returns the lift curve; nothing after an error.
 std::optional<LiftCurve> curve_of(const Cam& e, SystemBuilder& builder) {
   const auto fail = [&](const std::string& message) -> std::optional<LiftCurve> {
     builder.error(message);

@@ -14,14 +14,14 @@
 namespace steplap {
 
 struct Cam : Element {
-  std::string a, b = "ground", cam; ///< follower; frame; rotating body
-  Vec2 axis = Vec2::UnitY();        ///< in b's axes
-  std::vector<Vec2> lift;           ///< [angle, lift], rad and m
-  std::string formula;              ///< lift as a formula of the angle, called `value`; replaces points
+  std::string a, b = "ground", cam; ///< follower; frame of the follower's guide; rotating body
+  Vec2 axis = Vec2::UnitY();        ///< direction e in b's axes
+  std::vector<Vec2> lift;           ///< points [angle, lift], rad and m
+  std::string formula;              ///< lift as a formula of the angle, called `value` in it; replaces the points
   double start_angle = 0.0;         ///< φ in the reference pose, rad
-  double gap = 0.0;                 ///< m, in the reference pose; negative: compressed
+  double gap = 0.0;                 ///< gap in the reference pose, m; negative: compressed
   bool holds = false;
-  double stiffness = 0.0, damping = 0.0; ///< N/m, N s/m
+  double stiffness = 0.0, damping = 0.0; ///< contact stiffness, N/m; damping, N s/m
 };
 
 [[nodiscard]] const ElementKind& cam_kind();

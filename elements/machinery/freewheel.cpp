@@ -18,7 +18,7 @@ class OneWayClutch final : public OneWayLock {
 public:
   RowSpec row;
   double low = 0.0, high = 0.0;
-  double rest = 0.0; ///< N m: smaller torques are rounding
+  double rest = 0.0; ///< torques below this, N m, are rounding
   std::string name;  ///< name of the element
 
   [[nodiscard]] int refuses() const override { return low <= -k_without_bound ? 1 : high >= k_without_bound ? -1 : 0; }
@@ -50,7 +50,7 @@ public:
     event_value[2] = 1.0;
     return true;
   }
-  // Slips at the nearer bound; the other one is far away.
+  // Sets the direction of slip: at the bound that the torque has reached, since the other one is far away.
   void set_onset_direction(const Evaluation&, FrictionState& state, const double* wrench) const override {
     state.sign = wrench[0] > 0.5 * (low + high) ? -1 : 1;
   }
@@ -59,8 +59,8 @@ private:
   [[nodiscard]] double least() const { return low * (1.0 + k_friction_bound_slack) - rest; }
   [[nodiscard]] double most() const { return high * (1.0 + k_friction_bound_slack) + rest; }
   [[nodiscard]] double sliding(const FrictionState& state) const { return state.sign > 0 ? low : high; }
-  // Returns the sliding torque. If it is unbounded, an impact has joined the bodies, unless drives turn them against the lock, which is an
-  // error.
+  // Returns the sliding torque, N m. An unbounded one means that drives turn the bodies against the lock (otherwise an impact would have
+  // joined them), and throws.
   [[nodiscard]] double bound(const FrictionState& state) const {
     const double couple = sliding(state);
     if (std::abs(couple) < k_without_bound) return couple;
@@ -76,7 +76,7 @@ private:
 };
 
 void compile_freewheel(const Element& element, SystemBuilder& builder) {
-  constexpr double k_least_acceleration = 1e-11; // rad/s²: a torque that gives the lighter body less acceleration is rounding
+  constexpr double k_least_acceleration = 1e-11; // torques that accelerate the lighter body by less, rad/s², are rounding
   const auto& e = static_cast<const Freewheel&>(element);
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
   if (a.body == b.body) return builder.error("locks a body against itself: name markers on two different bodies");

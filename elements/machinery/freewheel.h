@@ -17,9 +17,9 @@ namespace steplap {
 
 struct Freewheel : Element {
   std::string a, b = "ground";
-  std::string free = "counter_clockwise"; ///< or "clockwise": direction in which a may overrun b
-  std::optional<double> holds;            ///< N m; not given: unbounded
-  double drags = 0.0;                     ///< N m, drag torque while overrunning
+  std::string free = "counter_clockwise"; ///< direction in which a may overrun b: "counter_clockwise" or "clockwise"
+  std::optional<double> holds;            ///< torque at which the lock slips, N m; not given: unbounded
+  double drags = 0.0;                     ///< drag torque while overrunning, N m
 };
 
 [[nodiscard]] const ElementKind& freewheel_kind();

@@ -14,11 +14,11 @@ namespace steplap {
 namespace {
 
 constexpr double k_turn = 2.0 * std::numbers::pi;
-constexpr double k_turn_digits = 1e-9;             // rad: digits of a file
-constexpr double k_rounded_angle = 1e-12 * k_turn; // rad: by which an angle of the curve may be rounded
-constexpr int k_turns = 20;                        // either way in which lobes of a formula are sought that not every turn has
+constexpr double k_turn_digits = 1e-9;             // tolerance of a whole turn, rad, for angles with few digits in a file
+constexpr double k_rounded_angle = 1e-12 * k_turn; // rounding error of an angle of the curve, rad
+constexpr int k_turns = 20; // turns in either direction that are divided if the lobes of a formula differ from turn to turn
 
-// Computes h'' at the points from the continuity of h' at each. For a periodic curve the last point is the first one.
+// Computes h'' at the points from the continuity of h'. In a periodic curve the last point equals the first.
 std::vector<double> curvatures(const std::vector<Vec2>& p, bool is_periodic) {
   const auto n = static_cast<Eigen::Index>(p.size()), count = is_periodic ? n - 1 : n;
   std::vector<Eigen::Triplet<double>> entries;
@@ -48,8 +48,8 @@ std::vector<double> curvatures(const std::vector<Vec2>& p, bool is_periodic) {
   return found;
 }
 
-// Divides turns until the formula is over each part either almost constant or close to a polynomial, whose shape the samples of a step
-// show. Its values at some angles cannot decide that: one of them may lie on a lobe by chance.
+// Divides turns into parts in which a formula is almost constant or close to a polynomial, so that the samples of a step show its shape.
+// Enclosures are used instead of values at single angles, because one of these may lie on a lobe by chance.
 class LobeSearch {
 public:
   explicit LobeSearch(const FormulaTree& tree) : tree_(tree), enclosures_(tree.size()) {
@@ -57,7 +57,7 @@ public:
       if (node.op == FormulaOp::operand) operands_ = std::max(operands_, static_cast<std::size_t>(node.operand) + 1);
   }
 
-  // Returns the ends of the parts of one turn, ascending; none if steps of one radian suffice.
+  // Returns the ends of the parts of one turn, rad, ascending; none if steps of one radian suffice.
   std::vector<double> knots(int turn) {
     const double begin = turn * k_turn, end = begin + k_turn;
     const Interval all = enclosure(begin, end).range;
@@ -70,9 +70,11 @@ public:
   }
 
 private:
-  static constexpr double k_wide = 0.4, k_narrowest = 4e-4; // rad: a step turns by at most one radian; narrower parts are not divided
-  static constexpr double k_least_lobe = 1e-4;              // of the lift in this turn
-  static constexpr double k_close = 0.1; // error of the polynomial relative to its range; a lobe between samples is larger
+  // rad: undivided parts wider than k_wide need no knots, because a step turns by at most one radian; parts narrower than k_narrowest are
+  // not divided
+  static constexpr double k_wide = 0.4, k_narrowest = 4e-4;
+  static constexpr double k_least_lobe = 1e-4; // variation of the lift that counts as constant, relative to its range in this turn
+  static constexpr double k_close = 0.1;       // error of the polynomial relative to its range; a lobe between samples is larger
 
   Enclosure<k_enclosure_degree> enclosure(double begin, double end) {
     std::array<double, k_enclosure_degree + 1> c{};
@@ -155,7 +157,7 @@ Lift LiftCurve::of_formula(double angle) const {
     const D operand = D::variable(x, 0);
     return formula_->evaluate(&operand, D(0.0), 0, room.data(), static_cast<D*>(nullptr));
   };
-  constexpr double k_step = 1e-5; // rad: half of the digits of a slope remain
+  constexpr double k_step = 1e-5; // step of the difference, rad; half of the digits of a slope remain
   const D now = with_slope(angle);
   return {now.v, now.d[0], (with_slope(angle + k_step).d[0] - with_slope(angle - k_step).d[0]) / (2.0 * k_step)};
 }

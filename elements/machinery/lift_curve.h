@@ -24,15 +24,15 @@ public:
   /// Curve through at least two points [angle, lift] in ascending order of angle. A whole turn requires at least three, with the last lift
   /// equal to the first.
   explicit LiftCurve(std::vector<Vec2> points);
-  /// Curve given by a formula whose operands are all the angle, without switches; `tree` is the same formula. Its second derivative, used
+  /// Curve given by a formula whose operands are all the angle, without switches; `tree` is the same formula. The second derivative, used
   /// only in Jacobians, is a difference of first derivatives.
   LiftCurve(FormulaProgram formula, const FormulaTree& tree);
 
   /// Returns the lift and its derivatives at an angle, rad.
   [[nodiscard]] Lift at(double angle) const;
-  /// Returns the angles of the points. For a formula: angles between which it is almost constant or close to a polynomial, none if steps of
-  /// one radian show all lobes; those of 20 turns either way if the lobes differ from turn to turn. If is_periodic(), the last is the first
-  /// plus a whole turn.
+  /// Returns the knots, rad. For a curve through points they are the angles of the points. For a formula they divide a turn so that it is
+  /// almost constant or close to a polynomial between them: none if steps of one radian show all lobes, and those of 20 turns in either
+  /// direction if the lobes differ from turn to turn. If is_periodic(), the last knot is the first plus a whole turn.
   [[nodiscard]] std::vector<double> knots() const;
   /// Returns true if the knots are the same in each turn.
   [[nodiscard]] bool is_periodic() const { return is_periodic_; }
@@ -45,7 +45,7 @@ private:
 
   std::vector<Vec2> points_;
   std::vector<double> curvature_; ///< h'' at the points
-  bool is_periodic_ = false;      ///< the points, or the knots of the formula, are the same in each turn
+  bool is_periodic_ = false;      ///< points or knots are the same in each turn
   std::optional<FormulaProgram> formula_;
   std::vector<double> formula_knots_;
 };

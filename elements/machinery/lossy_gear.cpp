@@ -16,8 +16,8 @@ namespace {
 struct MeshEntry {
   int a = k_ground, b = k_ground, carrier = k_ground;
   double ratio = 1.0, k = 0.0, c = 0.0;
-  double start = 0.0; ///< δ of the angles in the reference pose
-  double band = 0.0;  ///< N m: smaller loads count as zero
+  double start = 0.0; ///< δ in the reference pose, rad
+  double band = 0.0;  ///< loads below this, N m, count as zero
   int unit = 0, first_event = 0;
 
   template <class S> [[nodiscard]] S twist(const Motion<S>* motion) const {
@@ -29,7 +29,7 @@ struct MeshEntry {
   template <class S> [[nodiscard]] S couple(const Motion<S>* motion) const { return k * twist(motion) + c * rate(motion); }
 };
 
-// Modes: direction of the load on the teeth, so that friction is smooth within a mode.
+// Tooth forces of gears. The mode is the direction of the load on the teeth, so that the friction is smooth within a mode.
 class MeshGroup final : public ForceGroup {
 public:
   static constexpr UnitMode k_forwards = 0, k_backwards = 1;
@@ -49,7 +49,8 @@ public:
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>& out) const override {
     for (const ElementData& entry : entries) {
       const int bodies[3] = {entry.a, entry.b, entry.carrier};
-      const double by_angle[3] = {1.0, -entry.ratio, entry.ratio - 1.0}; // ∂δ by the three angles; the moments are −M times these
+      // Derivatives of δ with respect to the three angles; the moments are −M times these.
+      const double by_angle[3] = {1.0, -entry.ratio, entry.ratio - 1.0};
       for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column) {
           if (bodies[row] == k_ground || bodies[column] == k_ground) continue;
@@ -67,7 +68,7 @@ public:
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const ElementData& entry : entries) is_used[entry.a] = is_used[entry.b] = is_used[entry.carrier] = 1;
   }
-  void register_turns(TurnTable&) const override {} // nothing to add: a gear is linear in its angles
+  void register_turns(TurnTable&) const override {} // no limit of rotation: a gear is linear in its angles
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     return entries[static_cast<std::size_t>(element)].couple(e.motion) < 0.0 ? k_backwards : k_forwards;
   }
@@ -94,7 +95,7 @@ class ToothFriction final : public BoundedFriction {
 public:
   RowSpec row;
   MeshEntry mesh;
-  double loss = 0.0; ///< ν
+  double loss = 0.0; ///< loss factor ν = 1/efficiency − 1
 
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[mesh.a] = is_used[mesh.b] = is_used[mesh.carrier] = 1; }
@@ -122,7 +123,7 @@ public:
   }
 
 private:
-  // The bound must remain positive in the unit's dead band around zero.
+  // The bound must remain positive in the dead band about zero load.
   template <class S> [[nodiscard]] S bound(const EvaluationData<S>& e) const {
     const S couple = mesh.couple(e.motion);
     return loss * ((e.mode[mesh.unit] == MeshGroup::k_forwards ? couple : -couple) + S(mesh.band));
@@ -130,7 +131,7 @@ private:
 };
 
 void compile_lossy_gear(const Element& element, SystemBuilder& builder) {
-  constexpr double k_no_twist = 1e-12; // rad: a smaller initial twist is a residual of the joints
+  constexpr double k_no_twist = 1e-12; // an initial twist below this, rad, is a residual of the joints
   const auto& e = static_cast<const LossyGear&>(element);
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b), carrier = builder.marker(e.carrier);
   if (a.body == b.body || a.body == carrier.body || b.body == carrier.body)

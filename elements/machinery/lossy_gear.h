@@ -17,10 +17,10 @@
 namespace steplap {
 
 struct LossyGear : Element {
-  std::string a, b, carrier = "ground";  ///< shafts; body that carries both
+  std::string a, b, carrier = "ground";  ///< shafts a and b; body that carries both
   double ratio = 1.0;                    ///< i = ω_a/ω_b relative to the carrier; negative: opposite directions
-  double efficiency = 1.0;               ///< η if a drives
-  double stiffness = 0.0, damping = 0.0; ///< N m/rad, N m s/rad, referred to shaft a
+  double efficiency = 1.0;               ///< η when a drives
+  double stiffness = 0.0, damping = 0.0; ///< stiffness, N m/rad, and damping, N m s/rad, referred to shaft a
 };
 
 [[nodiscard]] const ElementKind& lossy_gear_kind();

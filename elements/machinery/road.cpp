@@ -10,12 +10,12 @@ namespace steplap {
 namespace {
 
 constexpr int k_most_tries = 100;
-constexpr double k_settled = 4.0 * std::numeric_limits<double>::epsilon(); // relative: rounding error of positions
+constexpr double k_settled = 4.0 * std::numeric_limits<double>::epsilon(); // convergence of positions, relative
 
 } // namespace
 
-// Finds the first sign change of f = (s − x) + h′ (h − y), half the derivative of the squared distance, downhill from s = x. In hollows the
-// steps −f/(1 + h′²) are too short, so none passes the root; on crests they may be too long and then bracket it.
+// Finds the first sign change, downhill from s = x, of f = (s − x) + h′ (h − y), half the derivative of the squared distance. In hollows
+// the steps −f/(1 + h′²) are too short, so none passes the root; on crests they may be too long, and then they bracket it.
 double Road::nearest_x(double x, double y) const {
   const auto slope_at = [&](double s, CurveJet<double>& jet) {
     jet = curve_.jet(s);
@@ -40,10 +40,10 @@ double Road::nearest_x(double x, double y) const {
   return here;
 }
 
-// x is a monotonic function of the contact position z: x = z − r sin φ(z), x′ = 1 − r κ > 0. Newton's method, with bisection where it
-// leaves the bracket of z.
+// Solves x = z − r sin φ(z) for the contact position z; x is monotonic in z, x′ = 1 − r κ > 0. Newton's method, with bisection where an
+// iterate leaves the bracket of z.
 double Road::touched_below(double x, double radius, double near) const {
-  double low = x - radius, high = x + radius, here = std::clamp(near, low, high); // |z − x| ≤ r
+  double low = x - radius, high = x + radius, here = std::clamp(near, low, high); // because |z − x| ≤ r
   for (int i = 0; i < k_most_tries; ++i) {
     const CurveJet<double> jet = curve_.jet(here);
     const double grown = std::sqrt(1.0 + jet.slope * jet.slope);
@@ -67,7 +67,7 @@ void Road::find_pieces() {
     if (i > 0) piece.length = pieces_.back().length + pieces_.back().length_over(points[i].x() - points[i - 1].x());
     pieces_.push_back(piece);
   }
-  pieces_.back().bend = 0.0; // zero at the end, up to rounding
+  pieces_.back().bend = 0.0; // zero curvature at the end, exactly
 }
 
 double Road::length_to(double x) const {
@@ -79,7 +79,7 @@ double Road::length_to(double x) const {
   return pieces_[i].length + pieces_[i].length_over(x - points[i].x());
 }
 
-// Gauss quadrature with ten nodes; the slope is a quadratic function.
+// Gauss quadrature of √(1 + y′²) with ten nodes; the slope y′ is a quadratic function.
 double Road::Piece::length_over(double d) const {
   constexpr std::array<double, 5> k_node = {0.14887433898163122, 0.43339539412924719, 0.67940956829902441, 0.86506336668898451,
                                             0.97390652851717172};
@@ -95,9 +95,8 @@ double Road::Piece::length_over(double d) const {
   return half * sum;
 }
 
-// Finds the largest upward curvature κ = h″/(1 + h′²)^{3/2} of the road. h″ is linear between the points, but the effect of the slope h′
-// has
-// no simple maximum and is therefore sampled.
+// Finds the largest upward curvature κ = h″/(1 + h′²)^{3/2} of the road. h″ is linear between the points, but κ has no simple maximum
+// because of h′, and is therefore sampled.
 void Road::find_hollowest() {
   constexpr int k_samples = 16;
   const std::vector<Vec2>& points = curve_.points();

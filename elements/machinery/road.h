@@ -20,7 +20,7 @@ template <class S> struct RoadPoint {
   S x{0.0}, height{0.0}, slope{0.0};
 };
 
-/// Distance travelled by a wheel's centre along a road, m, with its gradient by the position of the centre.
+/// Distance travelled by a wheel's centre along a road, m, with its derivatives with respect to the position of the centre.
 template <class S> struct RoadWay {
   S value{0.0}, by_x{1.0}, by_y{0.0};
 };
@@ -28,7 +28,7 @@ template <class S> struct RoadWay {
 /// The profile of one road.
 class Road {
 public:
-  Road() = default; ///< flat
+  Road() = default; ///< flat road
   /// Curve through at least two points in ascending order of x, m.
   explicit Road(std::vector<Vec2> points) : is_flat_(false), curve_(std::move(points)) {
     find_hollowest();
@@ -36,34 +36,33 @@ public:
   }
 
   [[nodiscard]] bool is_flat() const { return is_flat_; }
-  /// hollowest() returns the largest curvature κ = h″/(1 + h′²)^(3/2) of its hollows, 1/m, 0 without hollows; hollowest_at() returns its
-  /// position x.
+  /// Return the largest curvature κ = h″/(1 + h′²)^(3/2) of the hollows of the road, 1/m (0 without hollows), and its position x, m.
   [[nodiscard]] double hollowest() const { return hollowest_; }
   [[nodiscard]] double hollowest_at() const { return hollowest_at_; }
 
-  /// Returns the nearest road point to (x, y), with derivatives by x and y: one Newton step from the point found for doubles.
+  /// Returns the road point nearest to (x, y), with derivatives with respect to x and y: one Newton step from the point found for doubles.
   template <class S> [[nodiscard]] RoadPoint<S> nearest(const S& x, const S& y) const {
     if (is_flat_) return {x, S(0.0), S(0.0)};
     const double found = nearest_x(value_of(x), value_of(y));
     const CurveJet<double> at = curve_.jet(found);
     const double pull = pull_of(at, value_of(y)), most = 1.0 + at.slope * at.slope;
-    const S across = (S(found) - x) + S(at.slope) * (S(at.value) - y); // zero, but with derivatives
+    const S across = (S(found) - x) + S(at.slope) * (S(at.value) - y); // value zero, but with derivatives
     const S place = S(found) - S(1.0 / (pull > 0.0 ? pull : most)) * across;
     const CurveJet<S> jet = curve_.jet(place);
     return {place, jet.value, jet.slope};
   }
 
   /// Returns the distance travelled by a wheel with its centre at (x, y): a smooth function whose gradient is the road's direction at the
-  /// contact point. For a wheel on the road it is the arc length of the curve along which the centre of the rolling wheel moves. Above the
-  /// road it is that length for the wheel position straight below, plus a term by slope and height. Precondition: the wheel fits in all
-  /// hollows. `near`: a nearby position of the road.
+  /// contact point. For a wheel on the road it is the arc length of the path of the rolling wheel's centre. Above the road it is that
+  /// length for the wheel position straight below, plus a term by slope and height. Precondition: the wheel fits in all hollows. `near`: a
+  /// nearby position of the road.
   template <class S> [[nodiscard]] RoadWay<S> way(const S& x, const S& y, double radius, double near) const {
     if (is_flat_) return {x, S(1.0), S(0.0)};
     using std::sqrt;
     const double touched = touched_below(value_of(x), radius, near);
     const CurveJet<double> at = curve_.jet(touched);
     const double grown_at = std::sqrt(1.0 + at.slope * at.slope), room = 1.0 - radius * at.curvature / (grown_at * grown_at * grown_at);
-    const S ahead = S(1.0 / room) * (x - S(touched - radius * at.slope / grown_at)); // zero, but with derivatives
+    const S ahead = S(1.0 / room) * (x - S(touched - radius * at.slope / grown_at)); // value zero, but with derivatives
     const CurveJet<S> jet = curve_.jet(S(touched) + ahead);
     const S grown = sqrt(S(1.0) + jet.slope * jet.slope), sine = jet.slope / grown, bend = jet.curvature / (grown * grown * grown);
     const S above = y - jet.value - S(radius) / grown;
@@ -73,26 +72,26 @@ public:
   }
 
 private:
-  /// Spline piece from a point to the next: y′ = slope + d (bend + d third), d from the point.
+  /// Piece of the spline from a point to the next: y′ = slope + d (bend + d third), with d from the point.
   struct Piece {
     double slope = 0.0, bend = 0.0, third = 0.0;
-    double length = 0.0; ///< arc length from the first point of the road to this one, m
-    /// Returns the arc length over the first d, m.
+    double length = 0.0; ///< arc length from the first point of the road to the start of the piece, m
+    /// Returns the arc length from the start of the piece over the distance d, m.
     [[nodiscard]] double length_over(double d) const;
   };
-  /// Returns the position at which a wheel with its centre at x touches the road; the search begins at `near`.
+  /// Returns the position z, m, at which a wheel with its centre at x touches the road; the search begins at `near`.
   [[nodiscard]] double touched_below(double x, double radius, double near) const;
   /// Returns the arc length of the road from its first point to x, m.
   [[nodiscard]] double length_to(double x) const;
   void find_pieces();
-  /// Returns half of the second derivative by x of the squared distance from a point at height y.
+  /// Returns half of the second derivative, with respect to the position, of the squared distance from a point at height y.
   static double pull_of(const CurveJet<double>& at, double y) { return 1.0 + at.slope * at.slope - (y - at.value) * at.curvature; }
   [[nodiscard]] double nearest_x(double x, double y) const;
   void find_hollowest();
   bool is_flat_ = true;
   SmoothCurve curve_;
   double hollowest_ = 0.0, hollowest_at_ = 0.0;
-  std::vector<Piece> pieces_; ///< the last one continues beyond the last point
+  std::vector<Piece> pieces_; ///< pieces of the spline; the last one continues beyond the last point
 };
 
 } // namespace steplap

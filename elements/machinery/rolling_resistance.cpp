@@ -13,7 +13,7 @@ namespace steplap {
 
 namespace {
 
-// Friction loaded by one contact. For a tyre, the mode contains more than the state of contact.
+// Friction with the normal force of one contact, whose unit may be that of a tyre.
 class RollingFriction final : public CoulombFriction {
 public:
   bool is_tyre = false;
@@ -23,7 +23,7 @@ public:
   }
 };
 
-// Returns markers a and b of the contact of the rolling body.
+// Returns the markers a and b of the round body's contact; nothing for other elements.
 std::optional<std::pair<std::string, std::string>> ends_of(const Element& contact) {
   if (const auto* tyre = dynamic_cast<const Tyre*>(&contact)) return std::pair{tyre->a, tyre->b};
   if (const auto* round = dynamic_cast<const RoundContact*>(&contact)) return std::pair{round->a, round->b};
@@ -52,7 +52,7 @@ void compile_rolling_resistance(const Element& element, SystemBuilder& builder) 
   const auto ends = entry ? ends_of(*entry->element) : std::nullopt;
   if (!ends) return builder.error("'" + name + "' does not roll: name a tyre, a circle_contact or a segment_contact");
   const ContactIndex* const contact = builder.contact(name);
-  if (!contact) return; // the contact's own error is reported
+  if (!contact) return; // the contact reports its own error
   RowSpec row;
   row.kind = MeasureKind::angle;
   row.a = builder.marker(ends->first).body;

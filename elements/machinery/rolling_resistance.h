@@ -13,8 +13,8 @@
 namespace steplap {
 
 struct RollingResistance : Element {
-  std::vector<std::string> contacts; ///< one tyre, or one contact of a round body
-  double arm = 0.0;                  ///< m
+  std::vector<std::string> contacts; ///< name of one tyre, or of one contact of a round body
+  double arm = 0.0;                  ///< lever of the normal force, m
 };
 
 [[nodiscard]] const ElementKind& rolling_resistance_kind();

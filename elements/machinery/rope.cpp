@@ -29,21 +29,21 @@ struct RopePart {
   std::string name_a, name_b; ///< names of its markers
 };
 
-// A contact with the coordinate −L: taut is pressed, slack is open, and a rope released faster than its damped spring recovers is
-// released. The contact force is the tension. A rope over pulleys has one more event function while it is taut: the length of its
-// shortest part in excess of the length that counts as none. That is the elongation of the rope, without which the rest of it would be
-// slack, but at most k_run_in of the part's given length: the load has then reached its pulley. It is at least k_least_part of the
+// Elastic ropes. A rope is a contact with the coordinate −L and the tension as contact force: taut is pressed, slack is open, and a rope
+// that shortens faster than its damped spring recovers is released. A taut rope over pulleys has one more event function: the length of its
+// shortest part minus the length that counts as zero. That is the elongation of the rope (with a shorter part, the rest of the rope would
+// be slack), but at most k_run_in of the part's given length (the load has then reached its pulley), and at least k_least_part of the
 // rope's length, because a part of zero length has no direction.
 class RopeGroup final : public ForceGroup {
 public:
   static constexpr int k_event_count = KelvinVoigtContact::k_event_count + 1, k_on_pulley = KelvinVoigtContact::k_event_count;
-  static constexpr double k_run_in = 1e-3; ///< relative to the given length of a part
+  static constexpr double k_run_in = 1e-3; ///< length at which a part counts as run in, relative to its given length
 
   struct ElementData {
     std::vector<RopePart> parts;
     KelvinVoigtContact law;
     double fixed_length = 0.0; ///< length of parts within one body, m
-    double count = 1.0;        ///< equal ropes; `law` is that of all
+    double count = 1.0;        ///< number of equal ropes; `law` is that of all together
     std::string name;
     int unit = 0, first_event = 0;
   };
@@ -65,7 +65,7 @@ public:
     }
     return way;
   }
-  /// The length is the sum of all parts.
+  /// Returns the rounding error of the length, m: the sum over all parts.
   static double rounding_of(const ElementData& entry, const Motion<double>* motion) {
     double sum = k_rounded_sum * entry.fixed_length;
     for (const RopePart& part : entry.parts) {
@@ -74,7 +74,7 @@ public:
     }
     return sum;
   }
-  /// Returns the part nearest to having run onto its pulley.
+  /// Returns the part with the least length in excess of the length that counts as zero.
   static PartLength shortest_part_length(const ElementData& entry, double stretch, const Motion<double>* motion) {
     PartLength least;
     for (const RopePart& part : entry.parts) {
@@ -84,7 +84,7 @@ public:
     }
     return least;
   }
-  /// Returns the tension of one rope.
+  /// Returns the tension of one of the equal ropes, N.
   [[nodiscard]] double tension(int i, const Evaluation& e) const {
     const RopeLength way = rope_length(entries[i], e.motion);
     return entries[i].law.force(-way.length, -way.rate, e.mode[entries[i].unit]) / entries[i].count;
@@ -103,7 +103,7 @@ public:
       if (f == 0.0) continue;
       for (const RopePart& part : entry.parts) {
         const auto m = part.measure.at<false, double>(e.motion[part.a], e.motion[part.b]);
-        const Pair<double> pull = -f * m.direction; // on a, towards b
+        const Pair<double> pull = -f * m.direction; // force on a, directed towards b
         add_at(e.force[part.a], m.lever_a, pull);
         add_at(e.force[part.b], m.lever_b, -1.0 * pull);
       }
@@ -116,7 +116,7 @@ public:
     return sum;
   }
 
-  // Adds −T ∂²L/∂q² of each part alone, and −∂L/∂q (k ∂L + c ∂L̇) for each pair of parts.
+  // Adds −T ∂²L/∂q² for each part, and −∂L/∂q (k ∂L + c ∂L̇) for each pair of parts.
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
     for (const ElementData& entry : entries) {
       const RopeLength way = rope_length(entry, e.motion);
@@ -127,7 +127,7 @@ public:
         for (const RopePart& other : entry.parts) {
           const bool is_same = &one == &other;
           const Gradient h = is_same ? g : gradient_of(other, e.motion);
-          // Derivative of the tension by the length of the other part, including its contribution to the rate.
+          // Derivative of the tension with respect to the other part's length, including the rate.
           const D12 length = h.length + D12(way.length - h.length.v), rate = h.rate + D12(way.rate - h.rate.v);
           const D12 change = entry.law.force(-length, -rate, mode);
           if (is_same) add_whole(one, g, f, change, out);
@@ -170,7 +170,7 @@ public:
 private:
   struct Gradient {
     D12 length, rate;
-    D12 j[6]; ///< ∂length by the poses of a and b
+    D12 j[6]; ///< derivatives of the part's length with respect to the poses of a and b
   };
   static Gradient gradient_of(const RopePart& part, const Motion<double>* motion) {
     const auto m = part.measure.at<false, D12>(seeded(motion[part.a], 0), seeded(motion[part.b], 3));
@@ -192,7 +192,7 @@ private:
         j.damping(i, l) = -g.j[i].v * change.d[6 + l];
       }
   }
-  // Adds the derivatives of the forces of one part by the motion of the other part's bodies.
+  // Adds the derivatives of the forces of one part with respect to the motion of the other part's bodies.
   static void add_blocks(const RopePart& one, const RopePart& other, const Gradient& g, const D12& change, std::vector<PairJacobian>& out) {
     for (int row = 0; row < 2; ++row)
       for (int column = 0; column < 2; ++column) {
@@ -265,10 +265,11 @@ std::vector<RowSpec> rows_of(const std::vector<RopePart>& parts, SystemBuilder& 
   return rows;
 }
 
-// `entry`: as for an elastic rope; `now`: length of the way in the reference pose.
+// Adds an inextensible rope. `entry`: data as for an elastic rope; `now`: length in the reference pose, m; `length`: full length, m.
 void add_inextensible(const RopeGroup::ElementData& entry, double now, double length, SystemBuilder& builder) {
-  constexpr double k_least_acceleration = 1e-11; // m/s²: a tension that accelerates the lightest body by less counts as rounding
-  constexpr double k_dead_band = 1e-11, k_least_band = 4e-12; // relative to the length; m, larger than the residuals after projection
+  constexpr double k_least_acceleration = 1e-11; // tensions that accelerate the lightest body by less, m/s², are rounding
+  // Dead band of the length: relative to the length; at least in m, above the residuals after projection.
+  constexpr double k_dead_band = 1e-11, k_least_band = 4e-12;
   refuse_time_stepping(builder);
   if (now > length * (1.0 + OneSidedRow::k_too_long))
     return builder.error("its 'length' of " + rounded_text(length) + " m is less than the way over its points, " + rounded_text(now) +

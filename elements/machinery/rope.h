@@ -23,9 +23,9 @@ namespace steplap {
 
 struct Rope : Element {
   std::string a, b = "ground";
-  std::vector<std::string> over; ///< markers between its ends, in order
+  std::vector<std::string> over; ///< names of the markers between the ends, in order
   double across = 0.0;           ///< distance of its ends across the plane, m
-  long count = 1;                ///< equal ropes
+  long count = 1;                ///< number of equal ropes
   std::optional<double> stiffness;
   bool inextensible = false;
   double damping = 0.0;

@@ -12,7 +12,7 @@ constexpr double k_pi = std::numbers::pi;
 
 struct Profile {
   const char* name;
-  double h, b, web, flange, fillet; ///< mm
+  double h, b, web, flange, fillet; ///< dimensions, mm: height, width, web and flange thickness, fillet radius
 };
 
 constexpr std::array<Profile, 18> k_profiles = {{

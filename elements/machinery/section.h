@@ -17,9 +17,9 @@ namespace steplap {
 
 /// Values of a cross section.
 struct SectionValues {
-  double area = 0.0;          ///< m²
-  double second_moment = 0.0; ///< m⁴
-  double height = 0.0;        ///< m, perpendicular to the axis of bending
+  double area = 0.0;          ///< area, m²
+  double second_moment = 0.0; ///< second moment of area, m⁴
+  double height = 0.0;        ///< height, m, perpendicular to the axis of bending
 };
 
 /// Returns the values of a rectangle width × height, m.

@@ -15,7 +15,7 @@ namespace {
 class SidewaysGrip final : public BoundedFriction {
 public:
   RowSpec row;
-  double grip = 0.0, drags = 0.0; ///< N
+  double grip = 0.0, drags = 0.0; ///< static and kinetic bound, N
 
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }

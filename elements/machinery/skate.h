@@ -20,8 +20,8 @@ namespace steplap {
 struct Skate : Element {
   std::string a, b = "ground";
   Vec2 axis{1.0, 0.0};         ///< direction of motion e in marker a's axes
-  std::optional<double> grip;  ///< N; not given: unbounded
-  std::optional<double> drags; ///< N
+  std::optional<double> grip;  ///< sideways force at which the skate slides, N; not given: unbounded
+  std::optional<double> drags; ///< sideways force while sliding, N
 };
 
 [[nodiscard]] const ElementKind& skate_kind();

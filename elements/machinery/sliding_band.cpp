@@ -20,7 +20,7 @@ D18 exponential(const D18& x) {
   return {value, value * x.d};
 }
 
-// Returns α of the drum, and of a belt's other wheel.
+// Returns the wrap angles α of the drum and of a belt's other wheel, rad.
 template <class S> std::array<S, 2> angles_of(const Group::ElementData& entry, const Group::Flow<S>& flow) {
   const WoundMeasure& first = entry.parts[0].measure;
   if (!entry.is_belt) {
@@ -32,7 +32,7 @@ template <class S> std::array<S, 2> angles_of(const Group::ElementData& entry, c
   return {S(std::numbers::pi) + S(2.0) * half_turned, S(std::numbers::pi) + S(2.0 * entry.far_sign) * half_turned};
 }
 
-// Returns the ratio E where the band is held least.
+// Returns the ratio E of the drum or wheel on which the band slides first (the smallest μ α).
 template <class S> S ratio_of(const Group::ElementData& entry, const std::array<S, 2>& angles) {
   const S at_drum = S(entry.friction[0]) * angles[0];
   if (!entry.is_belt) return exponential(at_drum);
@@ -49,7 +49,7 @@ template <class S> void find_tensions(const Group::ElementData& entry, UnitMode 
   const bool is_taut = mode >= Group::k_sticks;
   flow.tension = is_taut ? std::array<S, 2>{first + c0 * flow.slip, second - c1 * flow.slip} : std::array<S, 2>{S(0.0), S(0.0)};
   if (is_taut) return;
-  // A loose band: s follows the value for equal tensions of both parts.
+  // Loose band: s follows the value at which both parts have equal tension.
   const S k0(entry.parts[0].stiffness), k1(entry.parts[1].stiffness);
   flow.slip = (k1 * flow.rate[1] - k0 * flow.rate[0]) / (k0 + k1);
 }
@@ -78,7 +78,7 @@ Group::Flow<D18> seeded_flow(const Group::ElementData& entry, const Evaluation& 
   return flow_with<D18>(entry, motion, D18(e.inner[entry.inner]), e.mode[entry.unit]);
 }
 
-// ∂T_i/∂s and ∂ṡ/∂s. While it slides the tensions depend only on the total elongation, in which s cancels.
+// Derivatives ∂T_i/∂s and ∂ṡ/∂s. During sliding the tensions depend only on the total elongation, in which s cancels.
 struct ByState {
   std::array<double, 2> tension{0.0, 0.0};
   double slip = 0.0;
@@ -87,12 +87,13 @@ ByState by_state(const Group::ElementData& entry, UnitMode mode) {
   const double k0 = entry.parts[0].stiffness, k1 = entry.parts[1].stiffness;
   ByState by;
   if (mode < Group::k_sticks) return by;
-  if (mode != Group::k_sticks) by.slip = -1.0 / entry.time; // −(k_1 + E k_0)/(c_1 + E c_0), and the same for the other direction
+  // Equals −(k_1 + E k_0)/(c_1 + E c_0), or the corresponding value for the other direction.
+  if (mode != Group::k_sticks) by.slip = -1.0 / entry.time;
   by.tension = {k0 * (1.0 + entry.time * by.slip), -k1 * (1.0 + entry.time * by.slip)};
   return by;
 }
 
-// Returns the stiffness of both parts in series.
+// Returns the stiffness of both parts in series, N/m.
 double joint_stiffness(const Group::ElementData& entry) {
   const double k0 = entry.parts[0].stiffness, k1 = entry.parts[1].stiffness;
   return k0 * k1 / (k0 + k1);
@@ -168,15 +169,15 @@ void SlidingBandGroup::add_forces(Evaluation& e) const {
 double SlidingBandGroup::inner_energy(const Motion<double>* motion, const double* inner) const {
   double sum = 0.0;
   for (const ElementData& entry : entries) {
-    // With s balanced, as in a loose band, this is the energy of both parts in series.
+    // For s in balance, as in a loose band, the energy is that of both parts in series.
     const Flow<double> flow = flow_of(entry, motion, inner[entry.inner], k_sticks);
     if (flow.stretch[0] + flow.stretch[1] > 0.0) sum += stored(entry, flow);
   }
   return sum;
 }
 
-// A loose band: the rate of s follows the motion only within the error of the method, so s is corrected. A taut band at rest beyond its
-// bound has slid until it is at the bound, as required in an equilibrium.
+// Corrects s. In a loose band its rate follows the motion only within the error of the method. A taut band at rest beyond its bound is
+// moved to the bound, as if it had slid, because an equilibrium requires this.
 double SlidingBandGroup::project_inner(const Evaluation& e, double* inner) const {
   double dissipated = 0.0;
   for (const ElementData& entry : entries) {
@@ -294,7 +295,7 @@ UnitMode SlidingBandGroup::next_mode(int element, UnitMode mode, int slot, const
     return contact == k_contact_open ? k_loose : k_let_go;
   };
   if (!is_taut(mode)) return of_contact(law.next_mode(contact_mode(mode), slot, value, rate, rounding));
-  // Both bounds coincide at zero tension.
+  // At zero tension both bounds coincide.
   const bool is_without = law.unclamped_force(value, rate) <= rounding;
   if (is_without || (mode != k_sticks && slot == 1)) return of_contact(law.next_mode(k_contact_pressed, 0, value, rate, rounding));
   if (mode == k_sticks) return slot == 0 ? k_to_second : k_to_first;

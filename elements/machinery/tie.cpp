@@ -13,15 +13,15 @@ namespace steplap {
 
 namespace {
 
-// Modes: 0 slack; 1, 2 in tension, elongated without force; 3, 4 the same in compression; 5 acts in both directions without slack; 6
-// broken.
+// Modes: 0 slack; 1 tension, 2 elongated without force; 3 and 4 the corresponding modes in compression; 5 acts in both directions without
+// slack; 6 broken.
 constexpr UnitMode k_slack = 0, k_pulls = 1, k_presses = 3, k_linear = 5, k_broken = 6;
 
 struct TieLaw {
   static constexpr int k_event_count = 3;
-  KelvinVoigtContact pull, push; ///< for −δ and δ; offset −∞ if it does not act
+  KelvinVoigtContact pull, push; ///< contact laws for −δ and δ; offset −∞ if that side does not act
   double k = 0.0, c = 0.0, free = 0.0;
-  double strength = std::numeric_limits<double>::infinity(); ///< total strength
+  double strength = std::numeric_limits<double>::infinity(); ///< strength of all ties together, N
   bool is_linear = false;
 
   static UnitMode contact_mode(UnitMode mode) { return mode == k_pulls || mode == k_presses ? k_contact_pressed : k_contact_released; }
@@ -32,7 +32,7 @@ struct TieLaw {
     return contact == k_contact_pressed ? side : side + 1;
   }
 
-  /// Returns the force on a along the measure; tension is negative.
+  /// Returns the force on a along the measure, N; tension is negative.
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     const S d = value - S(free);
     if (is_pull(mode)) return -pull.force(-d, -rate, contact_mode(mode));
@@ -92,7 +92,7 @@ public:
     int a = k_ground, b = k_ground;
     Measure measure;
     TieLaw law;
-    int inner = -1; ///< 1 after it has broken, for a tie with a strength
+    int inner = -1; ///< index of the inner state that is 1 after breaking, for a tie with a strength; −1: none
     bool stops = false;
     int link = 0, unit = 0, first_event = 0;
   };
@@ -166,7 +166,7 @@ public:
     const ElementData& entry = entries[element];
     return entry.measure.template at<false, double>(e.motion[entry.a], e.motion[entry.b]);
   }
-  /// Returns the force, tension positive.
+  /// Returns the force, N, tension positive.
   [[nodiscard]] double force_of(int element, const Evaluation& e) const {
     const auto m = measured(element, e);
     return -entries[element].law.force(m.value, m.rate, e.mode[entries[element].unit]);
@@ -244,7 +244,7 @@ void compile_tie(const Element& element, SystemBuilder& builder) {
   with_distance(builder, a, b, e.across, [&](const auto& measure) { add(e, builder, a.body, b.body, measure); });
 }
 
-// Judges a tie with a strength: it must not break.
+// Judges a tie with a strength: the criterion is met if it does not break.
 ElementJudgement judge_tie(const Element& element, const Model&, const RunResult& run) {
   const auto& tie = static_cast<const Tie&>(element);
   if (!tie.strength || tie.consequence == "none") return {};
@@ -265,7 +265,7 @@ ElementJudgement judge_tie(const Element& element, const Model&, const RunResult
     if (event.kind == EventKind::breaks && event.element == tie.name) {
       result.outcome = result.consequence;
       result.t = event.t;
-      result.reserve.reset(); // accuracy does not matter once it has broken
+      result.reserve.reset(); // a broken tie is certain, whatever the error
     }
   return {{std::move(result)}, {}, ""};
 }

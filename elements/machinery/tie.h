@@ -13,16 +13,16 @@ namespace steplap {
 
 struct Tie : Element {
   std::string a, b = "ground";
-  std::optional<Vec2> axis;     ///< in marker b's axes; not given: point to point
+  std::optional<Vec2> axis;     ///< direction of the tie in marker b's axes; not given: the line between the markers
   double across = 0.0;          ///< distance of its ends across the plane, m
-  std::string acts = "tension"; ///< "tension", "compression", "both"
+  std::string acts = "tension"; ///< sides on which it acts: "tension", "compression", "both"
   double stiffness = 0.0, damping = 0.0;
-  double slack = 0.0;                 ///< m, free travel on each side on which it acts
-  std::optional<double> preload;      ///< total preload in the reference pose, N, tension positive
-  std::optional<double> strength;     ///< strength of one tie, N
-  std::string on_break = "continue";  ///< "continue" or "stop"
-  std::string consequence = "reject"; ///< consequence of breaking for the verdict: "reject", "inspect", or "none" for a predetermined
-                                      ///< breaking point
+  double slack = 0.0;                ///< free travel on each side on which it acts, m
+  std::optional<double> preload;     ///< total preload in the reference pose, N, tension positive
+  std::optional<double> strength;    ///< strength of one tie, N
+  std::string on_break = "continue"; ///< "continue" or "stop": what the run does when the tie breaks
+  /// Consequence of breaking for the verdict: "reject", "inspect", or "none" for a predetermined breaking point.
+  std::string consequence = "reject";
   long count = 1;
 };
 

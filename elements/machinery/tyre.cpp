@@ -14,7 +14,7 @@ namespace steplap {
 
 namespace {
 
-const Vec2 k_up(0.0, 1.0); // of a flat road, in marker b's axes
+const Vec2 k_up(0.0, 1.0); // normal of a flat road, in marker b's axes
 
 bool check(const Tyre& e, SystemBuilder& builder) {
   const auto fail = [&](const std::string& message) {
@@ -97,7 +97,7 @@ ContactDescription describe(const Element& element, const Model& model) {
   ContactDescription contact;
   contact.a = e.a;
   contact.b = e.b;
-  contact.opening_ends_slip = true; // one friction element for contact and tread
+  contact.opening_ends_slip = true; // contact and tread are one friction element, which ends with the contact
   contact.depth_limit = std::min(e.radius, thickness_behind(model, e.b, k_up).value_or(e.radius));
   contact.points = [](const Element& wheel, const ScenePose& pose) {
     const auto& of = static_cast<const Tyre&>(wheel);

@@ -32,14 +32,14 @@ namespace steplap {
 
 struct Tyre : Element {
   std::string a, b = "ground";
-  double radius = 0.0;            ///< m
-  std::vector<Vec2> road;         ///< (x, height), m, in marker b's axes; empty: flat
-  double stiffness = 0.0;         ///< N/m
-  double damping = 0.0;           ///< N s/m
-  double friction = 0.0;          ///< μ
-  double slip_stiffness = 0.0;    ///< C, N for a slip of 1
-  double relaxation_length = 0.0; ///< σ, m
-  double tread_damping = 0.0;     ///< b, N s/m
+  double radius = 0.0;            ///< radius r, m
+  std::vector<Vec2> road;         ///< points (x, height) of the road, m, in marker b's axes; empty: flat
+  double stiffness = 0.0;         ///< radial stiffness k, N/m
+  double damping = 0.0;           ///< radial damping c, N s/m
+  double friction = 0.0;          ///< coefficient of friction μ
+  double slip_stiffness = 0.0;    ///< slip stiffness C, N per unit of slip
+  double relaxation_length = 0.0; ///< relaxation length σ, m
+  double tread_damping = 0.0;     ///< tread damping b, N s/m
 };
 
 [[nodiscard]] const ElementKind& tyre_kind();

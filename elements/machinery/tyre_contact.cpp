@@ -13,8 +13,8 @@ namespace {
 
 using D12 = Dual<12>;
 
-// Modes: two bits of the contact; the next ones for the tread; then whether the wheel rotates as in rolling forward; then whether it is so
-// fast that its bristles are damped less.
+// Bits of a mode: two for the contact, two for the tread; one if the wheel rotates as in rolling forward; one if it rotates so fast that
+// the damping of its bristles is reduced.
 enum Sliding : UnitMode { k_adheres = 0, k_slides_forward = 1, k_slides_backward = 2 };
 
 UnitMode contact_of(UnitMode mode) { return mode & 3U; }
@@ -39,7 +39,7 @@ TreadState<S> tread_at(const TyreGroup::ElementData& entry, const WheelMotion<S>
   const TreadLaw& law = entry.tread;
   TreadState<S> t;
   t.bent = w.tread.value - p;
-  if (!tyre_presses(mode)) { // bristles without contact straighten
+  if (!tyre_presses(mode)) { // without contact the bristles straighten
     t.rate = S(-law.stiffness / law.damping) * t.bent;
     return t;
   }
@@ -62,7 +62,7 @@ UnitMode sliding_at(double trial, double most) {
   return trial < -most ? k_slides_backward : k_adheres;
 }
 
-// Returns the whole mode for a given mode of the contact; direction of rotation and sliding follow from the motion.
+// Returns the complete mode for a given mode of the contact; direction of rotation and sliding follow from the motion.
 UnitMode mode_with(const TyreGroup::ElementData& entry, const WheelMotion<double>& w, double p, UnitMode contact) {
   const WheelSpin turning{w.rolling<0.0, std::abs(w.rolling)> entry.tread.slow()};
   if (contact != k_contact_pressed) return mode_of(contact, k_adheres, turning);
@@ -75,7 +75,7 @@ WheelMotion<double> wheel_at(const TyreGroup::ElementData& entry, const Motion<d
   return entry.measure.at(motion[entry.a], motion[entry.b]);
 }
 
-// Terms of the Jacobians, as dual numbers of the poses (0–5) and velocities (6–11) of a and b.
+// Quantities for the Jacobians, as dual numbers of the poses (0–5) and velocities (6–11) of a and b.
 struct Derivatives {
   WheelMotion<D12> wheel;
   D12 normal;
@@ -156,7 +156,7 @@ void TyreGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out
   }
 }
 
-// T and u̇ depend on p only by u = s − p, at given s.
+// At given s, T and u̇ depend on p only by u = s − p.
 void TyreGroup::add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobian>& out) const {
   for (const ElementData& entry : entries) {
     const UnitMode mode = e.mode[entry.unit];
@@ -167,7 +167,7 @@ void TyreGroup::add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobia
     const double rate_by_bent = adheres ? -passing : -entry.tread.stiffness / damping;
     const double force_by_bent = adheres ? entry.tread.stiffness - damping * passing : 0.0;
     const RowGradient<D12> g = gradient_of(d.wheel.tread);
-    const D12 rate = d.wheel.tread.rate - d.tread.rate; // ṗ
+    const D12 rate = d.wheel.tread.rate - d.tread.rate; // rate ṗ of the inner state
     InnerJacobian& j = out.emplace_back();
     j.a = entry.a;
     j.b = entry.b;
@@ -196,7 +196,7 @@ void TyreGroup::register_links(LinkTable& links) {
   for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
 }
 
-// If the wheel is higher above the road than the radius of its hollows, another point may be nearest, but it is no nearer than this bound.
+// If the wheel is higher above the road than the radius of its hollows, another road point may be nearest, but no nearer than this bound.
 void TyreGroup::add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const {
   for (const ElementData& entry : entries) {
     const WheelMotion<double> w = wheel_at(entry, motion);

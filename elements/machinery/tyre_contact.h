@@ -16,23 +16,23 @@ namespace steplap {
 
 /// Motion of a wheel relative to its road.
 template <class S> struct WheelMotion {
-  MeasureValue<S> gap;   ///< distance of the centre from the road, along its normal
-  MeasureValue<S> tread; ///< s; its direction is that of the road
-  S slip_rate{0.0};      ///< v_s, m/s
-  S rolling{0.0};        ///< r ω, m/s
+  MeasureValue<S> gap;   ///< distance of the centre from the road, m, along the road's normal
+  MeasureValue<S> tread; ///< position s along the road, m, and its direction
+  S slip_rate{0.0};      ///< slip velocity v_s, m/s
+  S rolling{0.0};        ///< rolling velocity r ω, m/s
 };
 
 /// Geometry of a wheel on its road.
 struct WheelMeasure {
-  Vec2 centre, origin, level; ///< centre in the frame of a; origin and direction of the road in that of b
-  double radius = 0.0;        ///< m
+  Vec2 centre, origin, level; ///< centre in the frame of a; origin and direction (unit vector) of the road in that of b
+  double radius = 0.0;        ///< radius of the wheel, m
   std::shared_ptr<const Road> road;
 
   template <class S, class B> [[nodiscard]] WheelMotion<S> at(const Motion<S>& a, const B& b) const {
     using std::sqrt;
     const Pair<S> ra = to_ground(a, centre), e = to_ground(b, level), up = perp(e);
     const Pair<S> reach = offset(a, b) + ra, from_origin = reach - Pair<S>(to_ground(b, origin));
-    const Pair<S> velocity = point_velocity(a, ra) - point_velocity(b, reach); // as seen from b
+    const Pair<S> velocity = point_velocity(a, ra) - point_velocity(b, reach); // velocity of the centre relative to b
     const S x = dot(e, from_origin), y = dot(up, from_origin);
     const RoadPoint<S> foot = road->nearest(x, y);
     const S inverse = S(1.0) / sqrt(S(1.0) + foot.slope * foot.slope);
@@ -56,10 +56,10 @@ struct WheelMeasure {
 
 /// Parameters of the tread.
 struct TreadLaw {
-  double friction = 0.0;   ///< μ
-  double stiffness = 0.0;  ///< C/σ, N/m
-  double damping = 0.0;    ///< b, N s/m
-  double relaxation = 1.0; ///< σ, m
+  double friction = 0.0;   ///< coefficient of friction μ
+  double stiffness = 0.0;  ///< stiffness C/σ, N/m
+  double damping = 0.0;    ///< damping b, N s/m
+  double relaxation = 1.0; ///< relaxation length σ, m
 
   /// Returns the rolling velocity V up to which the damping b is used, 4 C/b, m/s; above it the damping is 4 C/V.
   [[nodiscard]] double slow() const { return 4.0 * stiffness * relaxation / damping; }
@@ -67,11 +67,11 @@ struct TreadLaw {
 
 /// Forces, N, and deflection, m and m/s, of the bristles at one time.
 template <class S> struct TreadState {
-  S most{0.0};  ///< μ N
-  S trial{0.0}; ///< T required for adhesion
-  S force{0.0}; ///< T
-  S bent{0.0};  ///< u
-  S rate{0.0};  ///< u̇
+  S most{0.0};  ///< bound μ N
+  S trial{0.0}; ///< force T required for adhesion
+  S force{0.0}; ///< tread force T
+  S bent{0.0};  ///< deflection u
+  S rate{0.0};  ///< its rate u̇
 };
 
 /// All tyres, as one force group.
@@ -80,12 +80,13 @@ public:
   struct ElementData {
     int a = k_ground, b = k_ground;
     WheelMeasure measure;
-    KelvinVoigtContact press; ///< law for the distance of the centre
+    KelvinVoigtContact press; ///< radial contact law, for the distance of the centre
     TreadLaw tread;
-    int inner = 0; ///< index of p
+    int inner = 0; ///< index of the inner state p
     int link = 0, unit = 0, first_event = 0, contact = 0;
   };
-  static constexpr int k_event_count = 6; ///< two of the contact, two of the tread, one for the direction of rotation, one for its speed
+  /// Two event functions of the contact, two of the tread, one for the direction of rotation, one for its speed.
+  static constexpr int k_event_count = 6;
   std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override;
@@ -105,7 +106,7 @@ public:
   [[nodiscard]] EventKind event_kind(UnitMode from, UnitMode to) const override;
   [[nodiscard]] EventKind sliding_in(UnitMode mode) const override;
 
-  /// The following functions are for channels.
+  /// Values for channels.
   [[nodiscard]] WheelMotion<double> measured(int element, const Evaluation& e) const;
   [[nodiscard]] double normal_force(int element, const Evaluation& e) const;
   [[nodiscard]] TreadState<double> tread_state(int element, const Evaluation& e) const;
@@ -113,7 +114,7 @@ public:
 
 /// Returns true if the tyre is pressed in this mode.
 [[nodiscard]] inline bool tyre_presses(UnitMode mode) { return (mode & 3U) == k_contact_pressed; }
-/// Returns true if its tread slides in this mode. Precondition: it is pressed.
+/// Returns true if the tread slides in this mode. Precondition: tyre_presses(mode).
 [[nodiscard]] inline bool tread_slides(UnitMode mode) { return (mode >> 2U & 3U) != 0; }
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// Elongation e of a rope between two wheels on which it is wound, or between a wheel and a point. It is derived in wound_rope.h.
+// Elongation e of a rope between two wheels on which it is wound, or between a wheel and a point. Derivation: wound_rope.h.
 #pragma once
 
 #include "mbd/system/turn_table.h"
@@ -7,15 +7,15 @@
 
 namespace steplap {
 
-/// Value −e, so that a taut rope is a pressed contact. Ground axes, because θ may be many turns.
+/// Measure with the value −e, so that a taut rope is a pressed contact. It uses ground axes, because θ may be many turns.
 struct WoundMeasure {
   Vec2 point_a, point_b; ///< centres of the wheels
   double radius_a = 0.0, radius_b = 0.0;
-  Vec2 start = Vec2::UnitX(); ///< direction u of the straight part in the reference pose
-  double taken = 0.0;         ///< value of e there, m
+  Vec2 start = Vec2::UnitX(); ///< direction u of the straight part in the reference pose, unit vector
+  double taken = 0.0;         ///< value of e in the reference pose, m
 
   template <class S> struct Straight {
-    Pair<S> u, lever_a, lever_b; ///< levers of the points at which the rope leaves the wheels
+    Pair<S> u, lever_a, lever_b; ///< direction u; levers of the points at which the rope leaves the wheels
     S length{0};
   };
   template <class S> [[nodiscard]] Straight<S> straight(const Motion<S>& a, const Motion<S>& b) const {

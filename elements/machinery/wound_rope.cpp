@@ -14,7 +14,8 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_shortest = 1e-6; // of the straight part in the reference pose, m, as for parts of a rope
+// Smallest length of the straight part, relative to that in the reference pose; equal to that of ropes.
+constexpr double k_shortest = 1e-6;
 
 class WoundRopeGroup final : public ForceGroup {
 public:
@@ -23,7 +24,7 @@ public:
     WoundMeasure measure;
     KelvinVoigtContact law;
     std::string name;
-    double shortest = 0.0; ///< m: a shorter straight part has vanished, and its direction is rounding
+    double shortest = 0.0; ///< smallest length of the straight part, m; below it the part has vanished, and its direction is rounding
     int unit = 0, first_event = 0;
   };
   std::vector<ElementData> entries;
@@ -87,7 +88,7 @@ public:
   }
 
 private:
-  // The value contains the wound length in addition to the terms of the measure.
+  // Includes the rounding error of the wound length, in addition to those of the measure's terms.
   static double rounding_of(const ElementData& entry, const MeasureValue<double>& m, const Evaluation& e) {
     const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b];
     const double wound =

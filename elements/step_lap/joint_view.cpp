@@ -55,11 +55,11 @@ JointView look_at(const StepLapJoint& joint, const StepLapFriction& friction, co
 
 } // namespace
 
-double JointView::sliding(int direction) const { // support function h of the unit twist
+double JointView::sliding(int direction) const { // support function h of the unit twist in this direction
   return interfaces.empty() ? std::numeric_limits<double>::infinity() : evaluate_gradient(patch, Vec3::Unit(direction)).h;
 }
 
-double JointView::alone(int direction) const { // largest wrench in this direction inside the limit surface
+double JointView::alone(int direction) const { // largest wrench in this direction that the limit surface contains
   return interfaces.empty() ? std::numeric_limits<double>::infinity() : 1.0 / required_pressure(patch, Vec3::Unit(direction)).u;
 }
 

@@ -12,10 +12,10 @@
 
 namespace steplap {
 
-/// One step-lap joint. It refers to the model, which must outlive it. A joint without interfaces has infinite capacity and no utilisation.
+/// One step-lap joint. Refers to the model, which must outlive it. A joint without interfaces has infinite capacity and no utilisation.
 struct JointView {
   const StepLapJoint* joint = nullptr;             ///< never nullptr
-  std::vector<const StepLapInterface*> interfaces; ///< in the order of the model; empty: the joint holds any load
+  std::vector<const StepLapInterface*> interfaces; ///< in the order of the model; empty: the joint carries any load
   Patch patch;                                     ///< interfaces with their static coefficients, about the limb's centre of gravity
   std::vector<std::string> beside;                 ///< elements that connect the same two bodies in parallel: "'tie plate' (tie)"
   std::vector<double> areas;                       ///< overlap area of each interface, m^2
@@ -23,10 +23,10 @@ struct JointView {
   /// Returns the friction force or couple if the limb slides purely along x (0), along y (1) or turns (2), N or N m.
   [[nodiscard]] double sliding(int direction) const;
   /// Returns the largest force along x (0) or y (1) through the limb's centre of gravity, or the largest couple (2), that the joint can
-  /// hold, N or N m. A force can hold less than sliding(), because it also exerts a couple on the joint if the centre of friction is not at
-  /// the limb's centre of gravity.
+  /// carry, N or N m. A force can be smaller than sliding(), because it also exerts a couple on the joint if the centre of friction is not
+  /// at the limb's centre of gravity.
   [[nodiscard]] double alone(int direction) const;
-  /// Returns the pressure required to hold the wrench (N, N, N m) on the limb. Throws NumericalFailure if the solution does not converge.
+  /// Returns the pressure required to carry the wrench (N, N, N m) on the limb. Throws NumericalFailure if the solution does not converge.
   [[nodiscard]] RequiredPressure required(const Vec3& wrench) const;
 };
 

@@ -59,7 +59,8 @@ void read_events(const std::vector<Event>& events, JointAssessment& result) {
   }
 }
 
-// Change of the force on the limb relative to its weight above which it counts as a load and not as settling of the machine.
+// Change of the force on the limb, relative to its weight, above which it counts as a load. Smaller changes occur while the machine
+// settles.
 constexpr double k_least_load = 1e-3;
 
 // Determines whether the joint was loaded beyond its load at rest.
@@ -72,7 +73,7 @@ void read_load(const RunResult& result, const Model& model, const StepLapJoint& 
   }
 }
 
-// The mode at the ends of steps counts as well as events: a slip may appear in either.
+// Reads slips from the modes at the ends of steps and from the events, because a slip may appear in only one of them.
 void read_modes(const RunResult& result, JointAssessment& a) {
   const ChannelRange* mode = find_range(result, a.joint + ".mode");
   const double slip = static_cast<double>(FrictionPhase::slip);

@@ -28,7 +28,7 @@ CriterionResult judge_holding(const JointAssessment& joint) {
     result.t = joint.time_of_smallest;
   }
   if (joint.first_slip) result.t = joint.first_slip;
-  if (joint.has_slipped) result.reserve.reset(); // accuracy does not matter once it has slipped
+  if (joint.has_slipped) result.reserve.reset(); // a slip is certain, whatever the error
   if (joint.verdict == JointVerdict::not_assessed || joint.verdict == JointVerdict::not_known) result.outcome = Verdict::open;
   else if (joint.has_slipped || joint.smallest_margin < joint.least_margin) result.outcome = Verdict::inspect;
   if (joint.has_come_apart) result.consequence = result.outcome = Verdict::reject;
@@ -37,7 +37,7 @@ CriterionResult judge_holding(const JointAssessment& joint) {
 
 void judge_least(const JointAssessment& joint, const Extreme& least, const char* channel, const std::string& text, double limit,
                  Verdict below, std::vector<CriterionResult>& criteria) {
-  if (std::isnan(least.value)) return; // only one corner or packet
+  if (std::isnan(least.value)) return; // a joint with only one corner or packet has no value
   CriterionResult result = joint_result(joint, text);
   result.value = least.value;
   result.limit = limit;
@@ -49,7 +49,7 @@ void judge_least(const JointAssessment& joint, const Extreme& least, const char*
   criteria.push_back(result);
 }
 
-// Judges each corner and packet alone; the others do not compensate for it.
+// Judges the weakest corner and the weakest packet separately, because the others do not compensate for them.
 void judge_shares(const JointAssessment& joint, std::vector<CriterionResult>& criteria) {
   if (joint.verdict == JointVerdict::not_assessed) return;
   judge_least(joint, joint.least_pressure, ".least_pressure", "every interface is pressed: pressure > 0 Pa", 0.0, Verdict::reject,
@@ -61,7 +61,7 @@ void judge_shares(const JointAssessment& joint, std::vector<CriterionResult>& cr
               Verdict::inspect, criteria);
 }
 
-// Applies only to joints with known sheets.
+// Judges the overlap of joints with known sheets.
 void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& criteria) {
   if (joint.verdict == JointVerdict::not_assessed) return;
   CriterionResult slid = joint_result(joint, "displacement of its corners, of the overlap's width <= " + limit_text(joint.most_slide));
@@ -108,8 +108,8 @@ void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& c
   criteria.push_back(closed);
 }
 
-// Returns the message for a joint that sticks beyond its capacity. This occurs if a method does not locate events, or steps over a storm of
-// them; whether the joint slips is then unknown.
+// Returns the message for a joint that sticks beyond its capacity; empty for others. This occurs with methods that do not locate events or
+// step over a storm of events. It is then unknown whether the joint slips.
 std::string contradiction_of(const JointAssessment& joint, const SimulationSettings& settings) {
   const char* does = joint.contradicts_itself() ? "holds" : joint.bears_too_much() ? "slides" : "";
   const std::string then = joint.contradicts_itself() ? "it has to slip" : "no element carries the stated load";

@@ -12,13 +12,13 @@ namespace {
 
 using D12 = Dual<12>;
 
-// A side of the overlap belongs to the end of the limb if its outward normal is within 60° of the direction to the yoke (cosine).
+// Least cosine between the outward normal of a side of the overlap and the direction to the yoke (60°): such a side is the end of the limb.
 constexpr double k_facing = 0.5;
 
 bool is_whole(double d1, double d2) { return d1 >= 0.0 && d2 >= 0.0; }
 
-/// Returns ∂U/∂d of a line. A bed with all ends closed uses the law for closed ends whatever the sign of d, so that the force is smooth
-/// until the event.
+/// Returns ∂U/∂d at both ends of a line. In mode k_bed_whole the law for closed ends is used whatever the sign of d, so that the force is
+/// smooth until the event.
 template <class S> EdgePress<S> press(const S& d1, const S& d2, double k, double length, UnitMode mode) {
   EdgePress<S> out;
   const S unit(k * length / 6.0);
@@ -31,7 +31,7 @@ template <class S> EdgePress<S> press(const S& d1, const S& d2, double k, double
   const S& d = near == 0 ? d1 : d2;
   const S& far = near == 0 ? d2 : d1;
   if (value_of(d) <= 0.0) return out;
-  const S share = d / (d - far); // fraction of the length in contact
+  const S share = d / (d - far); // fraction of the length that is in contact
   out.force[near] = unit * share * share * (S(2) * d - S(3) * far);
   out.force[1 - near] = unit * share * share * d;
   return out;
@@ -130,8 +130,8 @@ UnitMode EdgeGroup::initial_mode(int element, const Evaluation& e) const {
   return gaps.most < 0.0 ? k_bed_whole : gaps.least < 0.0 ? k_bed_partly : k_bed_open;
 }
 
-// A gap of zero counts as closed if it decreases. A bed that closes parallel to its yoke changes by both event functions at once, in either
-// order; the result is the same for both.
+// A gap of zero counts as closed if it decreases. If a bed closes parallel to its yoke, both event functions fire at once, in either order;
+// the result is the same.
 UnitMode EdgeGroup::next_mode(int element, UnitMode, int slot, const Evaluation& e) const {
   constexpr double k_parallel = 1e-9; // rad: a bed at a smaller angle to its yoke counts as parallel
   const ElementData& entry = entries[element];
@@ -157,7 +157,7 @@ EdgeGroup::Bearing EdgeGroup::bearing(int element, const Motion<double>* motion)
     double depth[2];
     for (int end = 0; end < 2; ++end) depth[end] = -line.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value;
     const auto p =
-        press(depth[0], depth[1], line.stiffness, line.length, k_bed_partly); // the mode does not matter: the penetrations decide
+        press(depth[0], depth[1], line.stiffness, line.length, k_bed_partly); // any mode but k_bed_whole: the penetrations decide
     bearing.force += p.force[0] + p.force[1];
     for (int end = 0; end < 2; ++end) bearing.load[end] += line.stiffness * std::max(0.0, depth[end]);
   }

@@ -38,14 +38,14 @@ class EdgeGroup final : public ForceGroup {
 public:
   /// A line along which two edges can touch.
   struct Line {
-    AxisMeasure gap[2];     ///< gaps at its ends, m; closed if negative
-    double stiffness = 0.0; ///< k, N/m²
-    double length = 0.0;    ///< m
+    AxisMeasure gap[2];     ///< gaps at the ends of the line, m; closed if negative
+    double stiffness = 0.0; ///< stiffness k per length of the line, N/m²
+    double length = 0.0;    ///< length of the line, m
   };
-  /// One bed.
+  /// Parallel lines of one corner with equal clearance.
   struct ElementData {
-    int a = k_ground, b = k_ground; ///< limb and active part
-    double clearance = 0.0;         ///< m, of all its lines
+    int a = k_ground, b = k_ground; ///< indices of the limb and of the active part
+    double clearance = 0.0;         ///< clearance of all lines of the bed, m
     std::vector<Line> lines;
     int link = 0, unit = 0, first_event = 0;
   };

@@ -14,20 +14,20 @@ namespace {
 
 using D12 = Dual<12>;
 
-constexpr int k_direction = 3, k_lost = 6; // positions of these states, relative to ElementData::inner
-constexpr int k_most_returns = 5;          // iterations; each reduces the error to the square of the relative change of the overlap
-constexpr double k_on_surface = 1e-15;     // tolerance of u
-// Limits of the iteration for p at a given direction of slip. The first step leaves an error of strain over width of the overlap.
+constexpr int k_direction = 3, k_lost = 6; // indices, relative to ElementData::inner: direction of slip (3), 1 once the joint came apart
+constexpr int k_most_returns = 5;          // largest number of iterations; each squares the relative change of the overlap
+constexpr double k_on_surface = 1e-15;     // tolerance of u on the limit surface
+// Limits of the iteration for p at a given direction of slip. The first step leaves a relative error of strain over width of the overlap.
 constexpr int k_most_followed = 20;
 constexpr double k_followed = 1e-14; // tolerance relative to the strain
 // Length, m, by which the direction is scaled as a state. Displacements near zero have an error of a thousandth of the tolerance
 // (Integrator::update_weights), so the direction has an error of the tolerance.
 constexpr double k_direction_length = 1e-3;
-// Limits of roundness (StepLapFriction) below which the direction becomes a state, and above which it ceases to be one. By the wrench the
-// direction is known to tolerance/roundness; where that is sufficient it is the smoother choice.
+// Limits of the roundness of the limit surface (StepLapFriction) below which the slip direction becomes a state, and above which it ceases
+// to be one. The wrench determines the direction to tolerance/roundness; where that is sufficient it is the smoother choice.
 constexpr double k_sharp = 1e-3, k_blunt = 1e-2;
-constexpr double k_strain_step = 1e-5; // share of the strain, for differences of the flow
-constexpr double k_least_step = 1e-12; // m
+constexpr double k_strain_step = 1e-5; // step of finite differences of the flow, relative to the strain
+constexpr double k_least_step = 1e-12; // smallest step of finite differences, m
 
 Pose slid_at(const double* inner) { return {inner[0], inner[1], inner[2]}; }
 
@@ -55,13 +55,13 @@ struct Measures {
     for (int r = 0; r < 2; ++r) m[r] = AxisMeasure{hold[r].point_a, hold[r].point_b, hold[r].direction}.at<false, D12>(a, b);
     m[2] = AngleMeasure{}.at<false, D12>(a, b);
   }
-  /// Returns the force on a, then that on b, for a unit wrench along measure r.
+  /// Computes the force on a, then that on b, for a unit wrench along measure r.
   void gradient(int r, D12* j) const {
     const D12 rows[6] = {m[r].direction.x,  m[r].direction.y,  cross(m[r].lever_a, m[r].direction) + m[r].couple,
                          -m[r].direction.x, -m[r].direction.y, -(cross(m[r].lever_b, m[r].direction) + m[r].couple)};
     std::copy(rows, rows + 6, j);
   }
-  /// Returns the gradient of all three by the poses, equal to that of their rates by the velocities.
+  /// Returns the derivatives of all three measures with respect to the poses, equal to those of their rates with respect to the velocities.
   [[nodiscard]] Eigen::Matrix<double, 3, 6> gradient() const {
     Eigen::Matrix<double, 3, 6> by_pose;
     for (int r = 0; r < 3; ++r) {
@@ -80,7 +80,7 @@ struct Measures {
   }
 };
 
-/// Returns the direction of slip that follows from the wrench.
+/// Returns the direction of slip that the wrench determines.
 Vec3 told_direction(const ElasticGripGroup::ElementData& entry, const Evaluation& e, const double* p) {
   return entry.friction->direction_of(e, slid_at(p), entry.friction->stiffness() * strain(entry.friction->pose_of(e.motion), p));
 }
@@ -91,7 +91,7 @@ UnitMode sliding_mode(const ElasticGripGroup::ElementData& entry, const Evaluati
   return entry.friction->roundness(e, slid_at(p), told_direction(entry, e, p)) < k_sharp ? k_elastic_follows : k_elastic_yields;
 }
 
-/// Moves p along the strain until the wrench lies on the limit surface (u = 1). Returns the dissipated energy.
+/// Moves p along the strain until the wrench lies on the limit surface (u = 1). Returns the dissipated energy, J.
 double return_to_surface(const ElasticGripGroup::ElementData& entry, const Evaluation& e, double* p) {
   const Pose now = entry.friction->pose_of(e.motion);
   double dissipated = 0.0;
@@ -101,15 +101,15 @@ double return_to_surface(const ElasticGripGroup::ElementData& entry, const Evalu
     if (!std::isfinite(u) || u <= 0.0 || std::abs(u - 1.0) <= k_on_surface) break;
     const Vec3 moved = d - d / u;
     Vec3::Map(p) += moved;
-    dissipated += (force * (0.5 + 0.5 / u)).dot(moved); // from the stored elastic energy
+    dissipated += (force * (0.5 + 0.5 / u)).dot(moved); // equals the decrease of the stored elastic energy
   }
   return dissipated;
 }
 
-/// Moves p until the wrench is that of the direction of slip. At a corner of the limit surface the wrench hardly determines the direction,
-/// but the direction always determines the wrench. Returns the dissipated energy.
+/// Moves p until the wrench is that of the direction of slip. Used at a corner of the limit surface, where the wrench hardly determines the
+/// direction, but the direction always determines the wrench. Returns the dissipated energy, J.
 double follow_direction(const ElasticGripGroup::ElementData& entry, const Evaluation& e, double* p) {
-  if (direction(p).isZero(0.0) || entry.friction->grip_beyond_last(e, slid_at(p)) <= 0.0) return 0.0; // already past separation
+  if (direction(p).isZero(0.0) || entry.friction->grip_beyond_last(e, slid_at(p)) <= 0.0) return 0.0; // the joint has already separated
   const Vec3 along = direction(p).normalized();
   Vec3::Map(p + k_direction) = k_direction_length * along;
   const Pose now = entry.friction->pose_of(e.motion);
@@ -123,7 +123,7 @@ double follow_direction(const ElasticGripGroup::ElementData& entry, const Evalua
     if (!(left > k_followed * k_followed * force.dot(d)) || !(left < before)) break; // converged to rounding of positions
     before = left;
     Vec3::Map(p) += moved;
-    dissipated += (force - 0.5 * over).dot(moved); // from the stored elastic energy
+    dissipated += (force - 0.5 * over).dot(moved); // equals the decrease of the stored elastic energy
   }
   return dissipated;
 }
@@ -202,7 +202,7 @@ void ElasticGripGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobia
   }
 }
 
-// The flow depends on the strain, on p by the strain and the overlap, and linearly on the rate.
+// The flow depends on the strain, on p through strain and overlap, and linearly on the rate.
 void ElasticGripGroup::add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobian>& out) const {
   for (const ElementData& entry : entries) {
     if (is_apart(e.mode[entry.unit]) || is_following(e.mode[entry.unit])) continue;
@@ -214,7 +214,8 @@ void ElasticGripGroup::add_inner_jacobian(const Evaluation& e, std::vector<Inner
     j.b = entry.b;
     j.first = entry.inner;
     j.count = 3;
-    Eigen::Matrix<double, 3, 6> gradient, turning, moving; // of s by the poses; of ṡ by the poses and the velocities
+    // Derivatives of s with respect to the poses; of ṡ with respect to poses and velocities.
+    Eigen::Matrix<double, 3, 6> gradient, turning, moving;
     for (int r = 0; r < 3; ++r) {
       D12 along[6];
       measures.gradient(r, along);
@@ -248,7 +249,7 @@ void ElasticGripGroup::add_inner_jacobian(const Evaluation& e, std::vector<Inner
   }
 }
 
-// In this mode the flow depends on p by the overlap, on the direction of slip and linearly on the rate, but not on the strain.
+// In mode `follows` the flow depends on p through the overlap, on the direction of slip, and linearly on the rate, but not on the strain.
 void ElasticGripGroup::add_state_jacobian(const Evaluation& e, StateJacobian& out) const {
   for (const ElementData& entry : entries) {
     if (!is_following(e.mode[entry.unit])) continue;
@@ -307,7 +308,7 @@ void ElasticGripGroup::register_links(LinkTable& links) {
 UnitMode ElasticGripGroup::initial_mode(int element, const Evaluation& e) const {
   const ElementData& entry = entries[element];
   const double* const p = e.inner + entry.inner;
-  if (p[k_lost] != 0.0) return k_elastic_apart; // it came apart before an action deactivated it
+  if (p[k_lost] != 0.0) return k_elastic_apart; // came apart before an action deactivated the joint
   const Vec3 force = entry.friction->stiffness() * strain(entry.friction->pose_of(e.motion), p);
   return entry.friction->spare(e, slid_at(p), force) < 0.0 ? sliding_mode(entry, e, p) : k_elastic_holds;
 }
@@ -317,7 +318,7 @@ UnitMode ElasticGripGroup::next_mode(int element, UnitMode mode, int slot, const
   const double* const p = e.inner + entry.inner;
   const UnitMode parts = mode & ~UnitMode{3};
   if (slot == 0) return parts | (elastic_state(mode) == k_elastic_holds ? sliding_mode(entry, e, p) : k_elastic_holds);
-  if (slot == 2 && !is_yielding(mode) && !is_following(mode)) return mode; // another event at the same instant has ended the slip
+  if (slot == 2 && !is_yielding(mode) && !is_following(mode)) return mode; // another event at the same time has already ended the slip
   if (slot == 2) return parts | (is_following(mode) ? k_elastic_yields : k_elastic_follows);
   bool is_any_left = false;
   const UnitMode parted = entry.friction->parted_at(slid_at(p), is_any_left);

@@ -15,12 +15,12 @@
 
 namespace steplap {
 
-/// Modes: holds; yields in the direction given by its wrench; has come apart; yields in the direction that is a state. The higher bits mark
-/// the interfaces that have separated.
+/// Modes of an elastic joint: holds; yields in the direction given by its wrench; has come apart; yields in the direction that is a state.
+/// The higher bits mark interfaces that have separated.
 inline constexpr UnitMode k_elastic_holds = 0, k_elastic_yields = 1, k_elastic_apart = 2, k_elastic_follows = 3;
-inline constexpr int k_elastic_parted = 2; ///< index of the first of these bits
+inline constexpr int k_elastic_parted = 2; ///< position of the first bit for separated interfaces
 
-/// Returns which of the four modes it is, without these bits.
+/// Returns which of the four modes it is, without the bits for interfaces.
 [[nodiscard]] inline UnitMode elastic_state(UnitMode mode) { return mode & 3U; }
 
 [[nodiscard]] inline FrictionPhase phase_of_elastic(UnitMode mode) {
@@ -32,13 +32,14 @@ inline constexpr int k_elastic_parted = 2; ///< index of the first of these bits
 class ElasticGripGroup final : public ForceGroup {
 public:
   struct ElementData {
-    int a = k_ground, b = k_ground;            ///< limb and active part
-    const StepLapFriction* friction = nullptr; ///< belongs to the system, which owns both
-    /// Index of the first of seven numbers: p (3), direction of slip (3), and 1 after it has come apart.
+    int a = k_ground, b = k_ground;            ///< indices of the limb and of the active part
+    const StepLapFriction* friction = nullptr; ///< friction of the joint, owned by the system
+    /// Index of the first of seven inner states: p (3), direction of slip (3), and 1 after the joint has come apart.
     int inner = 0;
     int link = 0, unit = 0, first_event = 0;
   };
-  static constexpr int k_event_count = 3; ///< bound or flow; separation of interfaces; sharpness of the corner
+  /// Event functions: bound or flow; separation of interfaces; sharpness of the corner of the limit surface.
+  static constexpr int k_event_count = 3;
   std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override;

@@ -12,14 +12,14 @@ namespace steplap {
 // Smallest times, s, down to which the onset and the end of a slip are resolved (step_lap_slip.cpp).
 inline constexpr double k_onset_time = 5e-8, k_end_time = 1e-11;
 
-/// Returns the traction of a pair of sheets at the point where its linear pressure has the value given in the interface.
+/// Returns the traction, N/m², of a pair of sheets at the point where its linear pressure has the value given in the interface.
 [[nodiscard]] inline double traction_of(const SheetPair& s, GripLaw law, double tilt) {
   const double pressed = s.transverse == 0.0 ? 1.0 : std::max(0.0, 1.0 + s.transverse * tilt);
   return pressed * (law == GripLaw::holding ? s.static_traction : s.kinetic_traction);
 }
 
 struct StepLapFriction::Fit {
-  Patch patch; ///< for pressure factor 1
+  Patch patch; ///< overlap area with the tractions for pressure factor 1
   Pose pose;
   double tilt = 0.0;
   Capacity capacity;
@@ -32,9 +32,8 @@ struct StepLapFriction::Fit {
     has_capacity = true;
   }
 
-  /// Returns the patch with a table, for callers that need more than the bounds by the capacity; many joints that hold never do. It is a
-  /// separate copy, since with a table sums are computed in another order, and results from `patch` must not depend on whether the table
-  /// exists.
+  /// Returns the patch prepared with expansions (Patch::prepare), for callers that evaluate it often; many joints never need it. It is a
+  /// separate copy, because expansions sum in another order, and results from `patch` must not depend on whether the copy exists.
   const Patch& tabulated() {
     if (has_table) return table;
     table = patch;
@@ -47,7 +46,7 @@ struct StepLapFriction::Fit {
   bool has_table = false;
 };
 
-/// All arguments of a flow.
+/// Arguments of a flow evaluation, compared to reuse the last result.
 struct StepLapFriction::FlowQuestion {
   Vec3 slid, force, direction, rate;
   PressureState pressure;
@@ -59,17 +58,17 @@ struct StepLapFriction::Scratch final : SlipScratch {
   Region region;
   Fit fits[2];
   Patch spare;
-  Vec3 asked = Vec3::Zero(); ///< wrench of the last usage() at this pose
+  Vec3 asked = Vec3::Zero(); ///< wrench of the last usage() at the pose asked_at
   Pose asked_at;
-  bool was_stuck = false; ///< its result came from the table
-  bool was_known = false; ///< its result came from the slip law
+  bool was_stuck = false; ///< result of the last usage() came from the prepared patch
+  bool was_known = false; ///< result of the last usage() came from the slip law
   RequiredPressure answer;
   PressureState pressed;                                   ///< pressures at the last usage()
-  double onset_time = k_onset_time, end_time = k_end_time; ///< s, resolution of onset and end of slip
-  OverlapLoss lost;                                        ///< at this pose
+  double onset_time = k_onset_time, end_time = k_end_time; ///< times to which onset and end of slip are resolved, s
+  OverlapLoss lost;                                        ///< loss at the pose lost_at
   Pose lost_at;
   bool is_lost_known = false;
-  std::optional<FlowQuestion> flow_asked; ///< arguments of the last flow
+  std::optional<FlowQuestion> flow_asked; ///< arguments of the last flow evaluation
   Flow flow_answer;
 
   void follow(double tolerance) override;

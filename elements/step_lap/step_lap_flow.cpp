@@ -1,6 +1,6 @@
 // Yielding of an elastic step-lap joint: slip rate, its direction, and their derivatives for implicit methods. The direction follows from
-// the wrench or, at a corner of the limit surface, is a separate state. Twists along a direction are scaled(); wrenches are scaled
-// accordingly, about the joint's centre with the moment divided by the radius of gyration.
+// the wrench or, at a corner of the limit surface, is a separate state. Twists along a direction are scaled (StepLapFriction::scaled()).
+// Wrenches are scaled correspondingly: about the joint's centre, with the moment divided by the radius of gyration.
 #include "elements/step_lap/step_lap_fit.h"
 #include "mbd/base/diagnostics.h"
 #include "mbd/base/number_text.h"
@@ -15,15 +15,17 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_trial = 1.01;     // largest u at the end of a step; beyond it, the evaluation belongs to a stage of a rejected step
-constexpr double k_tilt_step = 1e-3; // m/s²: step of differences by the acceleration across the sheets; pressures are linear in it
-constexpr double k_slid_step = 1e-6; // m at a corner 1 m from the centre: step of differences by the overlap
-constexpr double k_turn_step = 1e-4; // change of direction for differences of the flow, which is smooth unless an edge passes the centre
-// Step for differences of the flow by the overlap: share of the distance slid, with limits, m. Edges that were aligned in the reference
-// pose cross within that distance, and a difference must not extend beyond the crossing.
+constexpr double k_trial = 1.01; // largest u at the end of an accepted step; larger values belong to stages of rejected steps
+// Step of finite differences with respect to the acceleration across the sheets, m/s²; pressures are linear in it.
+constexpr double k_tilt_step = 1e-3;
+constexpr double k_slid_step = 1e-6; // step of finite differences with respect to the overlap, m at a corner 1 m from the centre
+// Step of finite differences with respect to the direction; the flow is smooth unless an edge passes the centre.
+constexpr double k_turn_step = 1e-4;
+// Step of finite differences of the flow with respect to the overlap: fraction of the distance slid, and its limits, m. Edges that were
+// aligned in the reference pose cross within that distance, and a difference must not extend beyond the crossing.
 constexpr double k_overlap_step = 1e-4, k_least_overlap_step = 1e-9, k_most_overlap_step = 1e-7;
 
-/// Flow after the joint has come apart: the strain stays constant.
+/// Returns the flow after the joint has come apart: the strain stays constant.
 StepLapFriction::Flow flow_of_gone(const Vec3& rate) {
   StepLapFriction::Flow flow;
   flow.rate = rate;
@@ -50,8 +52,8 @@ void StepLapFriction::refuse_snap(double t) const {
                          "tangential stiffness, or leave it rigid");
 }
 
-// Computes ∂h/∂p along n and the change of h with the pressures by central differences. Their share in the balance is small: strain at the
-// bound over width of the overlap.
+// Computes ∂h/∂p along n and the change of h with the pressures by central differences. Their contributions to the balance are small:
+// strain at the bound over width of the overlap.
 StepLapFriction::Flow StepLapFriction::flow_under(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& rate) const {
   Flow flow;
   const PressureState now = pressure_at(e.t);
@@ -61,7 +63,7 @@ StepLapFriction::Flow StepLapFriction::flow_under(const Evaluation& e, const Pos
   const RequiredPressure need = required(f.patch, force / now.factor, e.t);
   const Vec3 n = need.direction, pull = stiffness_ * n;
   auto& own = static_cast<Scratch&>(*e.scratch[index_]);
-  Fit& moved = own.fits[1]; // unused: an elastic joint has equal friction coefficients
+  Fit& moved = own.fits[1]; // scratch memory: an elastic joint has equal friction coefficients and uses only fits[0]
   const double step = k_slid_step * std::min(1.0, gyration_);
   const auto power = [&](double way, double tilt) {
     build({slid.x + way * n[0], slid.y + way * n[1], slid.theta + way * n[2]}, GripLaw::holding, tilt, own.workspace, own.region,
@@ -93,7 +95,7 @@ Vec3 StepLapFriction::unscaled(const Vec3& y) const {
   return {y[0] + omega * arm_.y(), y[1] - omega * arm_.x(), omega};
 }
 
-/// Returns h of a patch with first derivatives by scaled twists; second derivatives if requested.
+/// Returns h of a patch with first derivatives with respect to scaled twists; second derivatives if requested.
 Dissipation StepLapFriction::friction_along(const Patch& patch, const Vec3& y, bool with_curvature) const {
   const Vec2 centre = patch.reference() + arm_;
   const Vec3 twist(y[0], y[1], y[2] / gyration_);
@@ -123,7 +125,7 @@ Vec3 StepLapFriction::bound_along(const Evaluation& e, const Pose& slid, const V
 }
 
 // The friction force changes along the slip with the overlap, and in time with the pressures. Both derivatives are central differences;
-// their share in the balance is small: strain at the bound over width of the overlap.
+// their contributions to the balance are small: strain at the bound over width of the overlap.
 StepLapFriction::Flow StepLapFriction::flow_along(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& direction,
                                                   const Vec3& rate) const {
   const PressureState now = pressure_at(e.t);
@@ -146,7 +148,7 @@ StepLapFriction::Flow StepLapFriction::find_flow_along(const Evaluation& e, cons
   flow.direction = n;
   const Dissipation d = friction_along(f.patch, y, true);
   auto& own = static_cast<Scratch&>(*e.scratch[index_]);
-  Fit& moved = own.fits[1]; // unused: an elastic joint has equal friction coefficients
+  Fit& moved = own.fits[1]; // scratch memory: an elastic joint has equal friction coefficients and uses only fits[0]
   moved.is_valid = false;
   const double step = k_slid_step * std::min(1.0, gyration_);
   const auto bound = [&](double way, double tilt) {
@@ -197,7 +199,7 @@ StepLapFriction::FlowSlopes StepLapFriction::flow_slopes(const Evaluation& e, co
     slopes.by_slid.col(c) =
         (at(moved_by(slid, way, moved), direction) - at(moved_by(slid, -way, moved), direction)) / (2.0 * way * moved[c]);
   }
-  // Derivatives across y are differences. Along y only the length changes, which relaxes to 1.
+  // Derivatives across y are finite differences. Along y only the length changes, which relaxes to 1.
   slopes.by_direction.bottomRows<3>() = -here.relaxation * y * y.transpose();
   const Vec3 side = y.unitOrthogonal();
   for (const Vec3& across : {side, Vec3(y.cross(side))})

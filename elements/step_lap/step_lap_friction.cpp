@@ -18,18 +18,18 @@ namespace steplap {
 
 namespace {
 
-// Excess of u over 1 that counts as rounding, below the resolution of a load.
+// Excess of u over 1 that counts as rounding; it is below the resolution of a load.
 constexpr double k_bound_slack = 1e-13;
-// Outside this range of u the cheap certified bounds decide whether the joint sticks.
+// Range of u in which the joint is evaluated exactly; outside it the cheap certified bounds decide whether the joint sticks.
 constexpr double k_surely_holds = 0.9, k_surely_slips = 1.1;
-// Share of the overlaps' capacity below which an elastic joint counts as separated. The direction of flow relaxes within a displacement
-// F/(K |ν|), which tends to zero with the overlap, so that steps would become ever shorter.
+// Remaining capacity of the overlaps, relative to the reference pose, below which an elastic joint counts as separated. The direction of
+// flow relaxes within a displacement F/(K |ν|), which tends to zero with the overlap, so that steps would become ever shorter.
 constexpr double k_last_grip = 1e-2;
-constexpr double k_surely_overlap = 0.25; // relative to the depth in the reference pose; above it a lower bound of the depth is sufficient
+constexpr double k_surely_overlap = 0.25; // depth relative to the reference pose above which a lower bound of the depth suffices
 
-// Largest residuals of iterations, relative to the capacity. The error of u is the square, 1e-14, so decisions by u are not affected. The
-// direction in which a slip begins has an error of 1e-7, which has no effect once the slip has started. A wrench of the mode problem may
-// differ by the fluctuation of blocks of other joints.
+// Largest permitted residuals of iterations, relative to the capacity. The error of u is their square, 1e-14, so decisions based on u are
+// not affected. The direction in which a slip begins has an error of 1e-7, which has no effect once the slip has started. A wrench of the
+// mode problem may differ by the fluctuation of blocks of other joints.
 constexpr double k_usage_residual = 1e-7, k_block_residual = 1e-9;
 
 void insist(double residual, double bound, const std::string& name, double t, const char* what) {
@@ -68,7 +68,7 @@ std::unique_ptr<FrictionScratch> StepLapFriction::make_scratch() const {
 
 void StepLapFriction::set_scales(const Pose& reference, Patch at_reference, const BodyData& limb, const BodyData& active_part) {
   if (at_reference.empty()) return;
-  auto fit = std::make_shared<Fit>(); // without acceleration across the sheets
+  auto fit = std::make_shared<Fit>(); // fit in the reference pose, without acceleration across the sheets
   fit->patch = std::move(at_reference);
   const Patch& patch = fit->patch;
   fit->pose = reference;
@@ -90,7 +90,7 @@ void StepLapFriction::set_scales(const Pose& reference, Patch at_reference, cons
   };
   take(limb, limb_mobility_);
   take(active_part, part_mobility_);
-  // Based on the limb, the lighter body; whether the active part is free, driven or held by joints is not known here.
+  // Based on the limb, the lighter body, because it is not known here whether the active part is free, driven or guided by joints.
   const double of_limb = mobility(limb, arm_);
   grip_acceleration_ = patch.force() * (of_limb > 0.0 ? of_limb : mobility(active_part, patch.centroid()));
 }
@@ -103,7 +103,7 @@ Pose StepLapFriction::pose_of(const Motion<double>* motion) const {
   return {p.c * x + p.s * y, p.c * y - p.s * x, l.theta - p.theta};
 }
 
-// While the joint sticks, the anchors of its rows are its pose, without rounding of positions.
+// While the joint sticks its pose is that of its anchors, without the rounding errors of positions.
 Pose StepLapFriction::anchor(const RowBase* bases) const {
   return {bases[hold[0].base].value, bases[hold[1].base].value, bases[hold[2].base].value};
 }
@@ -190,7 +190,7 @@ StepLapFriction::Fit& StepLapFriction::fit(FrictionScratch* const* scratch, cons
   if (is_same) return f;
   const bool is_reference = &f == &own.fits[0] && reference_ && reference_->tilt == tilt && reference_->pose.x == pose.x &&
                             reference_->pose.y == pose.y && reference_->pose.theta == pose.theta;
-  if (is_reference) return f = *reference_; // stored data of the reference pose: the result does not depend on poses evaluated since
+  if (is_reference) return f = *reference_; // the stored data of the reference pose do not depend on poses evaluated before
   build(pose, law, tilt, own.workspace, own.region, f.patch);
   f.pose = pose;
   f.tilt = tilt;
@@ -255,7 +255,8 @@ const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   const Vec3 w = wrench(s);
   const Pose pose = present(s);
   const PressureState now = pressure_at(s.t);
-  const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick; // the pose stays, so a table pays off
+  // The pose is constant, so expansions (Fit::tabulated()) pay off.
+  const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick;
   const bool is_known = knows_usage(s, w);
   const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y && own.asked_at.theta == pose.theta &&
                        own.pressed.factor == now.factor && own.pressed.tilt == now.tilt && own.was_stuck == is_stuck &&
@@ -281,7 +282,7 @@ ValueBounds StepLapFriction::usage_between(const Snapshot& s) const {
   const PressureState now = pressure_at(s.t);
   Fit& f = fit(s.evaluation->scratch, present(s), GripLaw::holding, now.tilt);
   f.prepare();
-  if (!f.has_capacity) return {0.0, std::numeric_limits<double>::infinity()}; // no area left
+  if (!f.has_capacity) return {0.0, std::numeric_limits<double>::infinity()}; // no overlap is left
   const UsageBounds bounds = usage_bounds(f.capacity, w / now.factor);
   return {bounds.lower, bounds.upper};
 }
@@ -306,7 +307,7 @@ BlockSolution StepLapFriction::solve_block(const Evaluation& e, const FrictionSt
   const GripLaw law = is_kinetic ? GripLaw::sliding : GripLaw::holding;
   const PressureState now = pressure_at(e.t);
   Fit& f = fit(e.scratch, anchor(e.bases), law, now.tilt);
-  // Wrenches in units of the factor f: ½ f² wᵀA w + f bᵀw over the admissible set for factor 1.
+  // Wrenches are in units of the pressure factor f: minimises ½ f² wᵀA w + f bᵀw over the admissible set for factor 1.
   const Mat3 mobility = now.factor * Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(a);
   const AdmissibleWrench w = admissible_wrench(f.tabulated(), 0.5 * (mobility + mobility.transpose()), Vec3(b[0], b[1], b[2]));
   insist(w.residual, k_block_residual, name_, e.t, "whether it sticks, and the wrench on its limb,");
@@ -323,8 +324,8 @@ double StepLapFriction::contact_point_event(const Evaluation& e, const FrictionS
   return state.phase == FrictionPhase::slip ? parting(e, pose_of(e.motion), state.foot) : 1.0;
 }
 
-// Returns the depth of an interface's overlap, or a lower bound from the reference pose if that is a large part of the reference depth. Far
-// from zero the exact value has no effect.
+// Returns the depth of an interface's overlap, m, or a lower bound if that is a large fraction of the depth in the reference pose. Far from
+// zero the exact value has no effect.
 double StepLapFriction::depth_of(std::size_t i, const Pose& pose, OverlapWorkspace& workspace) const {
   const double at_least = depth_[i].at_least(pose);
   if (at_least > k_surely_overlap * depth_[i].depth) return at_least;

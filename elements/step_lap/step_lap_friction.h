@@ -41,40 +41,42 @@
 
 namespace steplap {
 
-/// Clamping pressures at one time: each is multiplied by `factor` and by max(0, 1 + transverse · tilt) (SheetPair::transverse).
+/// Clamping pressures at one time: the pressure of each interface is multiplied by `factor` and by max(0, 1 + transverse · tilt)
+/// (SheetPair::transverse).
 struct PressureState {
   double factor = 1.0, tilt = 0.0;
   double factor_rate = 0.0, tilt_rate = 0.0;
   [[nodiscard]] bool operator==(const PressureState&) const = default;
 };
 
-/// Coefficients of friction: static or kinetic.
+/// Coefficients of friction: static (`holding`) or kinetic (`sliding`).
 enum class GripLaw { holding, sliding };
 
 /// Friction element of one step-lap joint.
 class StepLapFriction final : public FrictionElement {
 public:
-  /// `index`: its number among the friction elements; `row`: its first index in Snapshot::friction_force. Without sheets, or as a monitor,
-  /// it never slips.
+  /// `index`: number of this element among the friction elements; `row`: its first index in Snapshot::friction_force. Without sheets, or as
+  /// a monitor, it never slips.
   StepLapFriction(std::string name, int index, int row, std::vector<SheetPair> sheets, bool is_monitor, bool stops_when_apart);
 
   RowSpec hold[3]; ///< x and y in the axes of the active part, and the angle
-  /// Sets the signals of PressureState: factor (1 − loss) · `factor`, and the acceleration across the sheets; null if there is none.
+  /// Sets the signals of PressureState: factor (1 − loss) · `factor`, and the acceleration across the sheets, m/s². Null: constant.
   void set_pressure(const Signal* factor, double loss, const Signal* acceleration);
-  /// Returns the pressure factor and the transverse acceleration at time t. Throws NumericalFailure if the factor is not positive.
+  /// Returns the pressure factor and the acceleration across the sheets at time t, s. Throws NumericalFailure if the factor is not
+  /// positive.
   [[nodiscard]] PressureState pressure_at(double t) const;
   [[nodiscard]] bool has_changing_pressure() const { return pressure_signal_ || acceleration_ || kept_ != 1.0; }
   /// Sets the points at which linear pressures have their nominal values: the centroids of the overlaps at this pose.
   void centre_pressures(const Pose& reference);
-  /// Computes the scales of lengths and accelerations at the reference pose. Precondition: the rows are complete. `at_reference` is
-  /// patch_at() there for GripLaw::holding.
+  /// Computes the scales of lengths and accelerations at the reference pose. Precondition: the rows are complete. `at_reference`:
+  /// patch_at() of that pose for GripLaw::holding.
   void set_scales(const Pose& reference, Patch at_reference, const BodyData& limb, const BodyData& active_part);
 
   /// Makes the joint elastic with stiffness K about the limb's centre of gravity, axes of the active part. `inner`: first of its seven
   /// inner states (p, direction of slip, whether it has come apart); `unit`: unit of the force element.
   void make_elastic(const Mat3& stiffness, int inner, int unit);
-  /// Returns the stiffness of springs distributed uniformly over all interfaces at a pose (each counted with its number), with `total` N/m
-  /// in translation.
+  /// Returns the stiffness of springs distributed uniformly over all interfaces at a pose (equal interfaces count with their number);
+  /// `total`: stiffness in translation, N/m.
   [[nodiscard]] Mat3 spread_stiffness(const Pose& pose, double total) const;
 
   // --- present state ----------------------------------------------------------------------------------
@@ -87,9 +89,9 @@ public:
   [[nodiscard]] Patch patch_at(const Pose& pose, GripLaw law) const;
   /// Returns, for the wrench in `s`, the utilisation of the capacity, the slip direction and the centre of rotation.
   [[nodiscard]] const RequiredPressure& usage(const Snapshot& s) const;
-  /// Returns cheap bounds of the utilisation.
+  /// Returns cheap bounds of the utilisation (usage()).
   [[nodiscard]] ValueBounds usage_between(const Snapshot& s) const;
-  /// Returns the required pressure. Throws NumericalFailure, naming the joint, if the iteration does not converge.
+  /// Returns the required pressure for `wrench`. Throws NumericalFailure, naming the joint, if the iteration does not converge.
   [[nodiscard]] RequiredPressure required(const Patch& patch, const Vec3& wrench, double t) const;
   /// Returns the sum of the overlap areas, m²; equal interfaces count once.
   [[nodiscard]] double area(const Snapshot& s) const;
@@ -98,37 +100,37 @@ public:
   [[nodiscard]] const OverlapLoss& loss(const Snapshot& s) const;
   /// Returns the wrench on the limb about its centre of gravity, axes of the active part.
   [[nodiscard]] Vec3 wrench(const Snapshot& s) const;
-  /// Returns the slid pose; for an elastic joint without the elastic strain.
+  /// Returns the slid pose: for an elastic joint the relative pose without the elastic strain.
   [[nodiscard]] Pose slid_pose(const Snapshot& s) const;
   /// Returns whether the joint is free, sticks or slips.
   [[nodiscard]] FrictionPhase phase(const Snapshot& s) const;
 
   // --- elastic joints -----------------------------------------------------------------------------------
-  /// Yielding of an elastic joint: the rate ṗ, and the slip speed γ at the centre of the joint.
+  // Yielding of an elastic joint: rate ṗ of the slid pose, and slip speed γ at the centre of the joint.
   struct Flow {
     Vec3 rate = Vec3::Zero();
     double speed = 0.0;
-    Vec3 direction = Vec3::Zero(); ///< n
-    double resistance = 1.0;       ///< n·K n + u ∂h/∂p·n
-    double roundness = 1.0;        ///< roundness of the limit surface there
-    // For a given direction y:
-    Vec3 turning = Vec3::Zero();  ///< ẏ
+    Vec3 direction = Vec3::Zero(); ///< unit direction n
+    double resistance = 1.0;       ///< resistance to the slip n·K n + u ∂h/∂p·n
+    double roundness = 1.0;        ///< roundness of the limit surface at n
+    // Results of flow_along() for a given direction y:
+    Vec3 turning = Vec3::Zero();  ///< rate of change ẏ of the direction
     Mat3 turn = Mat3::Zero();     ///< maps a residual wrench to ẏ
     Vec3 by_speed = Vec3::Zero(); ///< residual wrench per unit of speed
     double relaxation = 0.0;      ///< rate at which |y| returns to 1
   };
-  /// Returns the flow in the direction given by the force K (s − p); `rate` is ṡ.
+  /// Returns the flow in the direction given by the force K (s − p); `rate`: ṡ.
   [[nodiscard]] Flow flow_under(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& rate) const;
   /// Returns the flow in direction y (scaled, |y| about 1) for this force.
   [[nodiscard]] Flow flow_along(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& direction, const Vec3& rate) const;
-  /// Derivatives of ṗ (first three rows) and ẏ of the latter.
+  /// Derivatives of ṗ (first three rows) and ẏ of flow_along().
   struct FlowSlopes {
     using Block = Eigen::Matrix<double, 6, 3>;
     Block by_slid = Block::Zero(), by_direction = Block::Zero(), by_rate = Block::Zero();
   };
   [[nodiscard]] FlowSlopes flow_slopes(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& direction,
                                        const Vec3& rate) const;
-  /// Returns the unit direction y in which the joint yields under a force on the limit surface; zero if it has almost come apart.
+  /// Returns the unit direction y in which the joint yields under a force on the limit surface; zero if the joint has almost come apart.
   [[nodiscard]] Vec3 direction_of(const Evaluation& e, const Pose& slid, const Vec3& force) const;
   /// Returns the radius of curvature of the limit surface at direction y, relative to the capacity; small at a corner.
   [[nodiscard]] double roundness(const Evaluation& e, const Pose& slid, const Vec3& direction) const;
@@ -136,13 +138,14 @@ public:
   [[nodiscard]] Vec3 bound_along(const Evaluation& e, const Pose& slid, const Vec3& direction) const;
   /// Returns 1 − u, or, far from the limit surface, a positive lower bound of it.
   [[nodiscard]] double spare(const Evaluation& e, const Pose& slid, const Vec3& wrench) const;
-  /// Returns u of a joint that yields; 1 if it has almost come apart.
+  /// Returns u of a joint that yields; 1 if the joint has almost come apart.
   [[nodiscard]] double yield_usage(const Evaluation& e, const Pose& slid, const Vec3& wrench) const;
-  /// Returns the event function for the separation of interfaces; the set bits of `parted` have already separated.
+  /// Returns the event function for the next separation of an interface; interfaces with a set bit in `parted` have already separated.
   [[nodiscard]] double parting(const Evaluation& e, const Pose& pose, std::uint32_t parted) const;
-  /// Returns, for an elastic joint, the remaining fraction of the capacity of its overlaps minus the one at which it comes apart.
+  /// Returns, for an elastic joint, the remaining capacity of its overlaps relative to the reference pose, minus the fraction at which it
+  /// comes apart.
   [[nodiscard]] double grip_beyond_last(const Evaluation& e, const Pose& slid) const;
-  /// Returns the separated interfaces as bits; `is_any_left`: some sheets overlap.
+  /// Returns the separated interfaces as bits; sets `is_any_left` if some sheets overlap.
   [[nodiscard]] std::uint32_t parted_at(const Pose& pose, bool& is_any_left) const;
   [[nodiscard]] const Mat3& stiffness() const { return stiffness_; }
   [[nodiscard]] double gyration() const { return gyration_; }
@@ -202,9 +205,9 @@ private:
   [[nodiscard]] Vec3 law_twist(const Evaluation& e, const FrictionState& state, const Vec3& nu) const;
   [[nodiscard]] double end_speed(const Evaluation& e) const;
 
-  static constexpr std::size_t k_tracked = 30; ///< number of interfaces whose separation is an event
+  static constexpr std::size_t k_tracked = 30; ///< largest number of interfaces whose separation is an event
 
-  std::shared_ptr<const Fit> reference_; ///< data in the reference pose, where most joints stay; shared
+  std::shared_ptr<const Fit> reference_; ///< patch and capacity in the reference pose, where most joints stay; shared by copies
   std::string name_;
   int index_ = 0, row_ = 0;
   std::vector<SheetPair> sheets_;
@@ -214,15 +217,15 @@ private:
   Vec2 arm_ = Vec2::Zero();              ///< from the limb's centre of gravity to the centre of the joint, m
   double gyration_ = 1.0;                ///< radius of gyration of the traction about the centre of the joint, m
   double grip_acceleration_ = 1.0;       ///< approximate largest acceleration by friction, m/s²
-  double limb_mobility_[2] = {0.0, 0.0}; ///< 1/mass, 1/inertia
+  double limb_mobility_[2] = {0.0, 0.0}; ///< 1/mass, 1/kg, and 1/inertia, 1/(kg m²), of the limb
   double part_mobility_[2] = {0.0, 0.0};
   const Signal* pressure_signal_ = nullptr;
   const Signal* acceleration_ = nullptr;
   double kept_ = 1.0;                                               ///< fraction of the pressures that remains after relaxation
-  int inner_ = -1, unit_ = -1;                                      ///< inner states and unit of an elastic joint; −1: not elastic
-  Mat3 stiffness_ = Mat3::Zero(), scaled_stiffness_ = Mat3::Zero(); ///< scaled_stiffness_: for scaled twists
+  int inner_ = -1, unit_ = -1;                                      ///< first inner state and unit of an elastic joint; −1: not elastic
+  Mat3 stiffness_ = Mat3::Zero(), scaled_stiffness_ = Mat3::Zero(); ///< stiffness K; scaled_stiffness_: K for scaled twists
   double slip_usage_ = 1.0;       ///< u while sliding: the ratio of the coefficients; NaN if interfaces have different ratios
-  std::vector<DepthBound> depth_; ///< per interface, relative to the reference pose
+  std::vector<DepthBound> depth_; ///< per interface: lower bound of its depth from the reference pose
 };
 
 } // namespace steplap

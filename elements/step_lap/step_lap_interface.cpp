@@ -44,8 +44,8 @@ bool are_same_bits(const Polygon& a, const Polygon& b) {
                                                        [](const Ring& x, const Ring& y) { return are_same_bits(x, y); });
 }
 
-// Returns make_outline(polygon), cached. It takes a quarter of the compilation of a system; an interface is compiled twice (for its check
-// and with its joint), and variants of a scene mostly have the same sheets. Valid until the next call.
+// Returns make_outline(polygon), cached; valid until the next call. Without the cache this takes a quarter of the compilation of a system:
+// an interface is compiled twice (for its check and with its joint), and variants of a scene mostly have the same sheets.
 const Outline& outline_of(Polygon polygon) {
   struct CachedOutline {
     Polygon polygon;
@@ -79,7 +79,7 @@ const Outline& make_sheet(const StepLapInterface& e, const Sheet& sheet, const s
   return outline_of(std::move(polygon));
 }
 
-/// Throws PolygonError, with rings named by the fields of the model file and positions in its coordinates.
+/// Throws PolygonError in which rings have the names of the model's fields, and positions are in its coordinates.
 void check_sheet(const StepLapInterface& e, const Sheet& sheet) {
   Polygon polygon{*sheet.outline, {}};
   std::vector<std::string> names;
@@ -108,13 +108,13 @@ void compile_interface(const Element& element, SystemBuilder& builder) {
     return builder.error("has holes: 'hole_diameter' must be more than 0 m");
   if (!e.part.empty() && !(e.part_share > 0.0)) return builder.error("names a 'part': give its 'part_share' of the limb's weight, too");
   if (e.across && !(e.across->norm() > 0.0)) return builder.error("'across' must not be [0, 0]");
-  // Each sheet is checked separately, so that the message can name it.
+  // Sheets are checked one by one, so that the message can name the invalid one.
   for (const bool is_yoke : {true, false}) try {
       const Sheet sheet = is_yoke ? yoke_of(e) : limb_of(e);
       try {
         static_cast<void>(make_sheet(e, sheet, is_yoke ? joint->active_part : joint->limb, builder));
       } catch (const PolygonError&) {
-        check_sheet(e, sheet); // gives the message in terms of the file
+        check_sheet(e, sheet); // throws the error in terms of the model file
         throw;
       }
     } catch (const PolygonError& error) {
@@ -124,7 +124,7 @@ void compile_interface(const Element& element, SystemBuilder& builder) {
 
 } // namespace
 
-// Area of the polygon: n/2 r² sin(2π/n) = π d²/4.
+// Radius for an equal area of polygon and circle: n/2 r² sin(2π/n) = π d²/4.
 Ring round_hole(const Vec2& centre, double diameter, long sides) {
   const double step = 2.0 * std::numbers::pi / static_cast<double>(sides);
   const double radius = 0.5 * diameter * std::sqrt(step / portable::sin(step));

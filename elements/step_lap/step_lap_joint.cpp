@@ -36,7 +36,8 @@ void add_wrench_channels(SystemBuilder& builder, const StepLapFriction& friction
                       [self](const Snapshot& s) { return self->wrench(s)[2]; });
 }
 
-// Returns a signal for the pressures. It may not jump during a run, since a sticking joint would have to slip instantaneously.
+// Returns a signal for the pressures. Reports an error if it jumps during the run, because a sticking joint would have to slip
+// instantaneously.
 const Signal* steady_signal(SystemBuilder& builder, const std::string& name, const char* field) {
   const Signal* signal = builder.signal(name);
   if (!signal) return nullptr;
@@ -51,7 +52,7 @@ const Signal* steady_signal(SystemBuilder& builder, const std::string& name, con
 
 void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction, const StepLapInterface& first) {
   const auto* self = &friction;
-  // Pressure of the first interface at the centroid of its overlap.
+  // Returns the pressure of the first interface at the centroid of its overlap, Pa.
   const auto pressure_at = [self, nominal = first.pressure, share = first.transverse_pressure / first.pressure](double t) {
     const PressureState now = self->pressure_at(t);
     return nominal * now.factor * std::max(0.0, 1.0 + share * now.tilt);
@@ -90,7 +91,7 @@ void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction,
                        const auto& centre = self->usage(s).centre;
                        return centre ? (*centre)[axis] : k_nan;
                      })
-        .has_extremes = false; // it can be infinite
+        .has_extremes = false; // no extremes: the value can be infinite
   builder.add_channel("area", "m^2", "overlap of one interface of each kind, added", [self](const Snapshot& s) { return self->area(s); });
 }
 
@@ -146,7 +147,7 @@ std::vector<const StepLapInterface*> interfaces_of(const StepLapJoint& joint, co
   std::vector<const StepLapInterface*> found;
   for (const ElementEntry& entry : builder.model().elements) {
     const Element& element = *entry.element;
-    if (typeid(element) != typeid(StepLapInterface)) continue; // a type comparison is faster than a cast
+    if (typeid(element) != typeid(StepLapInterface)) continue; // comparing types is faster than a cast
     const auto& interface = static_cast<const StepLapInterface&>(element);
     if (interface.joint == joint.name) found.push_back(&interface);
   }
@@ -177,7 +178,8 @@ BodyData mass_of(const std::string& name, const SystemBuilder& builder) {
   return data;
 }
 
-// Returns the stiffness of sheets in shear and contact in series: 1/(1/k + t/G) per area of one interface.
+// Returns the stiffness of the joint in translation, N/m: that of the sheets in shear and in contact in series, 1/(1/k + t/G) per area of
+// one interface.
 double stiffness_of(const StepLapJoint& e, const StepLapFriction& friction, const Pose& reference) {
   if (e.tangential_stiffness) return *e.tangential_stiffness;
   double compliance = 1.0 / *e.contact_stiffness;
@@ -233,7 +235,7 @@ struct EdgeCorner {
   Vec2 middle = Vec2::Zero(); ///< centre of its first line, axes of the active part
 };
 
-// Loads along adjacent bands of a corner are added as if on one line.
+// Returns the load of a corner: loads along its adjacent bands are added as if on one line.
 EdgeGroup::Bearing bearing_of(const EdgeGroup& group, const EdgeCorner& corner, const Motion<double>* motion) {
   EdgeGroup::Bearing sum;
   for (const int bed : corner.beds) {
@@ -316,7 +318,7 @@ bool add_edges(const StepLapJoint& e, const Pose& reference, SystemBuilder& buil
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     if (!sheets[i].clearance) continue;
     const EdgeLine line = find_edge_line(sheets[i], reference);
-    if (!line.is_known()) continue; // no overlap
+    if (!line.is_known()) continue; // without an overlap there is no edge line
     EdgeCorner& corner = corners[overlaps.corner_of(i)];
     EdgeGroup::Line own;
     own.stiffness = *e.edge_stiffness * sheets[i].count / corner.count;
@@ -341,7 +343,8 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   try {
     for (const StepLapInterface* i : interfaces) {
       sheets.push_back(make_sheets(*i, e.limb, e.active_part, builder));
-      if (!std::isfinite(sheets.back().static_traction)) return; // reported at the interface, like errors of polygons
+      // an infinite traction is reported at the interface, like errors of polygons
+      if (!std::isfinite(sheets.back().static_traction)) return;
     }
   } catch (const PolygonError&) {
     return;
@@ -371,7 +374,8 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   add_wrench_channels(builder, *friction);
   if (friction->has_sheets()) {
     add_usage_channels(builder, *friction, *interfaces.front());
-    constexpr double k_standard_gravity = 9.80665; // m/s²: for a model that shows the limb from above, without gravity in its plane
+    // Gravity, m/s², for the weight in a model that shows the limb from above, without gravity in its plane.
+    constexpr double k_standard_gravity = 9.80665;
     const double gravity = builder.model().header.gravity.norm();
     add_share_channels(builder, *friction, interfaces, mass_of(e.limb, builder).mass * (gravity > 0.0 ? gravity : k_standard_gravity));
     add_loss_channels(builder, *friction,
@@ -382,7 +386,7 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   builder.add_friction(std::move(friction));
 }
 
-// A rigid joint, and one with all optional fields.
+// Examples: a rigid joint, and one with all optional fields.
 constexpr const char* k_example = R"([[signal]]
 name = 'press'
 kind = 'constant'

@@ -17,20 +17,20 @@ namespace steplap {
 
 struct StepLapJoint : Element {
   std::string limb, active_part;
-  std::string mode = "slip";                            ///< "slip", or "monitor": never slides, but reports the utilisation
-  std::string on_apart = "stop";                        ///< "stop" or "continue"
-  std::optional<double> tangential_stiffness;           ///< of the whole joint in translation, N/m
-  std::optional<double> contact_stiffness;              ///< of one interface per area, N/m³
-  std::optional<double> sheet_thickness, shear_modulus; ///< m, Pa: thickness and shear modulus of a sheet, which add the compliance t/G
-  std::optional<double> edge_stiffness;                 ///< line load per penetration, of all sheets at a corner, N/m²
-  std::optional<double> allowed_line_load;              ///< of all sheets at a corner, N/m
-  std::optional<double> steel_thickness;                ///< of all sheets at a corner, m; converts a line load to a pressure
-  std::string pressure_signal;                          ///< factor of all pressures as a function of time; empty: 1
-  double pressure_loss = 0.0;                           ///< fraction of all pressures lost by relaxation
-  std::string transverse_acceleration;                  ///< signal, m/s²; empty: none
-  double least_margin = 1.0;                            ///< smallest margin for which a run counts as "hold"
-  double most_slide = 0.1;                              ///< displacement of a corner relative to the width of its overlap above which the
-                                                        ///< joint is rejected
+  std::string mode = "slip";                  ///< "slip", or "monitor": never slides, but reports the utilisation
+  std::string on_apart = "stop";              ///< effect on the run when the joint comes apart: "stop" or "continue"
+  std::optional<double> tangential_stiffness; ///< stiffness of the whole joint in translation, N/m
+  std::optional<double> contact_stiffness;    ///< stiffness of one interface per area, N/m³
+  /// Thickness t, m, and shear modulus G, Pa, of a sheet, which add the compliance t/G.
+  std::optional<double> sheet_thickness, shear_modulus;
+  std::optional<double> edge_stiffness;    ///< line load per penetration, of all sheets at a corner, N/m²
+  std::optional<double> allowed_line_load; ///< largest line load on all sheets at a corner together, N/m
+  std::optional<double> steel_thickness;   ///< thickness of all sheets at a corner together, m; converts a line load to a pressure
+  std::string pressure_signal;             ///< factor of all pressures as a function of time; empty: 1
+  double pressure_loss = 0.0;              ///< fraction of all pressures lost by relaxation
+  std::string transverse_acceleration;     ///< name of the signal of the acceleration across the sheets, m/s²; empty: none
+  double least_margin = 1.0;               ///< smallest margin for which a run counts as "hold"
+  double most_slide = 0.1; ///< displacement of a corner, relative to the width of its overlap, above which the joint is rejected
 };
 
 [[nodiscard]] inline bool is_elastic(const StepLapJoint& joint) {

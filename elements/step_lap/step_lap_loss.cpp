@@ -55,7 +55,7 @@ OverlapReference::OverlapReference(const std::vector<SheetPair>& sheets, const P
     if (const double length = o.across.norm(); length > 0.0) o.across /= length;
     middle[i] = centroid(region);
   }
-  // Bands belong to one corner if the centroid of each is on the limb sheet and on the yoke sheet of the other. Limb sheets alone would not
+  // Bands belong to one corner if the centroid of each lies on the other's limb sheet and yoke sheet. Limb sheets alone would not
   // distinguish the two sides of a T-joint's point.
   for (std::size_t i = 0; i < sheets.size(); ++i)
     for (std::size_t j = 0; j < i && overlaps_[i].corner == i; ++j) {

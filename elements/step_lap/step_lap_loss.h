@@ -1,10 +1,10 @@
 // Loss of overlap of a step-lap joint by sliding, compared with its reference pose.
 //
 // Interfaces whose sheets are stacked (the bands of a book at one corner of a core, or one side of a T-joint's point) form a corner. The
-// displacement of a corner is the largest displacement of the vertices of its overlaps, fixed in the limb and seen from the active part.
-// The width of a strip b × l is taken as 2 area/perimeter = b l/(b + l), nearly b; that of a corner as 2 Σ area/Σ perimeter over its
-// interfaces. The direction across an overlap is given by the interface, or from the centroid of the yoke sheet to that of the limb sheet;
-// the limb closes its clearance by moving in the opposite direction.
+// displacement of a corner is the largest displacement of the vertices of its overlaps, fixed in the limb, relative to the active part. The
+// width of a strip b × l is taken as 2 area/perimeter = b l/(b + l), nearly b; that of a corner as 2 Σ area/Σ perimeter over its
+// interfaces. The direction across an overlap is given by the interface; otherwise it leads from the centroid of the yoke sheet to that of
+// the limb sheet. The limb closes its clearance by moving in the opposite direction.
 #pragma once
 
 #include "elements/step_lap/step_lap_interface.h"
@@ -15,10 +15,11 @@ namespace steplap {
 
 /// Loss of overlap of one joint relative to the reference pose.
 struct OverlapLoss {
-  double area_lost = 0.0;    ///< m², sum over the interfaces that lost area, times their numbers
-  double overlap_left = 1.0; ///< remaining fraction for the corner that lost most; 0: separated completely, or no overlap from the start
-  double slid_share = 0.0;   ///< largest displacement of a corner relative to the width of its overlap
-  double clearance_left = std::numeric_limits<double>::infinity(); ///< smallest clearance left, m, of interfaces with a given clearance
+  double area_lost = 0.0; ///< lost area, m²: sum over the interfaces that lost area, times their numbers
+  /// Remaining fraction of the overlap, for the corner that lost most; 0: separated completely, or no overlap from the start.
+  double overlap_left = 1.0;
+  double slid_share = 0.0; ///< largest displacement of a corner relative to the width of its overlap
+  double clearance_left = std::numeric_limits<double>::infinity(); ///< smallest remaining clearance, m, over the interfaces that have one
 };
 
 /// Overlaps in the reference pose.
@@ -41,13 +42,13 @@ public:
 private:
   struct Overlap {
     double area = 0.0;
-    Vec2 across = Vec2::Zero();         ///< unit vector, axes of the active part
+    Vec2 across = Vec2::Zero();         ///< direction across the overlap, unit vector, axes of the active part
     std::vector<Vec2> in_part, in_limb; ///< vertices of the overlap in the axes of either body
     std::size_t corner = 0;
   };
-  std::vector<Overlap> overlaps_;    ///< in the order of the sheets
-  std::vector<double> corner_area_;  ///< m², with the numbers of interfaces
-  std::vector<double> corner_width_; ///< m
+  std::vector<Overlap> overlaps_;    ///< per pair of sheets
+  std::vector<double> corner_area_;  ///< per corner: overlap area, m², including the numbers of interfaces
+  std::vector<double> corner_width_; ///< per corner: width, m
 };
 
 } // namespace steplap

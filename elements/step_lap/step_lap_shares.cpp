@@ -10,7 +10,7 @@ namespace steplap {
 
 namespace {
 
-// Returns the fraction of a pressure that remains under tilting.
+// Returns the fraction of a pressure that remains at the present transverse acceleration (SheetPair::transverse).
 double left_by_tilt(double transverse, const PressureState& now) { return std::max(0.0, 1.0 + transverse * now.tilt); }
 
 } // namespace

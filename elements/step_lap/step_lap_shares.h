@@ -1,12 +1,12 @@
 // Capacity of each corner and each packet of a step-lap joint alone.
 //
-// The limit surface is that of the whole joint: a corner without clamping, or a packet of sheets without pressure, is compensated by the
-// others in the sum although its own sheets are not held. Each must therefore hold its own share as well. A packet moves with the limb and
-// is moved by its own friction only; it must hold its mass fraction (StepLapInterface::part_share) of the limb's weight or of the force on
-// the limb, whichever is larger. Each of n corners must hold 1/n of the weight; how the stiff sheets share dynamic loads is not determined
-// by statics and is judged for the whole joint. The weight also counts in a model without gravity, which shows the core from above. The
-// capacity is that in translation, Σ n μ p A over the interfaces in the reference pose with static μ, an upper limit for all wrenches.
-// Corners without overlap and interfaces without pressure have zero capacity, hence zero margin.
+// The limit surface is that of the whole joint, in which a corner without clamping, or a packet of sheets without pressure, is compensated
+// by the others although its own sheets are not held. Each corner and packet must therefore also carry its own share. A packet moves with
+// the limb, driven by its own friction only; it must carry its mass fraction (StepLapInterface::part_share) of the limb's weight or of the
+// force on the limb, whichever is larger. Each of n corners must carry 1/n of the weight; the distribution of dynamic loads among the stiff
+// sheets is not determined by statics and is judged for the whole joint. The weight also counts in a model without gravity, which shows the
+// core from above. The capacity is that in translation, Σ n μ p A over the interfaces in the reference pose with static μ, an upper limit
+// for all wrenches. Corners without overlap and interfaces without pressure have zero capacity, hence zero margin.
 #pragma once
 
 #include "elements/step_lap/step_lap_friction.h"
@@ -19,14 +19,15 @@ namespace steplap {
 /// Capacities of the corners and packets of one joint.
 class GripShares {
 public:
-  /// `interfaces` in the order of the friction's sheets; `weight` of the limb, N, > 0.
+  /// `interfaces`: in the order of the friction's sheets; `weight`: weight of the limb, N, > 0.
   GripShares(const StepLapFriction& friction, const std::vector<const StepLapInterface*>& interfaces, double weight);
 
   /// Returns the smallest pressure of any interface anywhere in its overlap, Pa; zero if tilting has relieved it.
   [[nodiscard]] double least_pressure(const PressureState& now) const;
-  /// Returns the smallest ratio of capacity to share over all corners.
+  /// Returns the smallest ratio of capacity to required share over all corners.
   [[nodiscard]] double corner_margin(const PressureState& now) const { return least_margin(corners_, now, weight_); }
-  /// Returns the same for packets. Precondition: has_parts(). `demand`: magnitude of the force on the limb, N.
+  /// Returns the smallest ratio of capacity to required share over all packets. Precondition: has_parts(). `demand`: magnitude of the force
+  /// on the limb, N.
   [[nodiscard]] double part_margin(const PressureState& now, double demand) const {
     return least_margin(parts_, now, std::max(weight_, demand));
   }
@@ -36,14 +37,14 @@ public:
 private:
   struct Sheet {
     double pressure = 0.0;   ///< smallest pressure in its overlap, Pa
-    double capacity = 0.0;   ///< N
-    double transverse = 0.0; ///< as in SheetPair
-    double spread = 0.0;     ///< relative difference at the outermost of its sheets, ±
+    double capacity = 0.0;   ///< capacity without transverse acceleration, N
+    double transverse = 0.0; ///< relative change of the traction per m/s², as in SheetPair
+    double spread = 0.0;     ///< largest deviation (±) of `transverse` among the sheets
   };
   struct Group {
     double share = 0.0;
     std::vector<Sheet> tilting; ///< sheets whose pressure changes with the transverse acceleration
-    double capacity = 0.0;      ///< capacity of the others, N
+    double capacity = 0.0;      ///< capacity of the sheets with constant pressure, N
     void add(const Sheet& sheet);
     [[nodiscard]] double capacity_at(const PressureState& now) const;
   };

@@ -1,4 +1,4 @@
-// Slip law of a step-lap joint from the onset to the end of a slip, and the scales that integrators need.
+// Slip law of a step-lap joint from the onset to the end of a slip, and the velocity scales that integrators need.
 #include "elements/step_lap/step_lap_fit.h"
 #include "mbd/base/portable_math.h"
 
@@ -9,24 +9,24 @@ namespace steplap {
 
 namespace {
 
-// Duration of an onset that is resolved, s: k_onset_time or k_onset_share times the cube root of the tolerance. Positions have an error
-// proportional to the third power of that time (docs/explanation/limit_surface.md, section 7).
+// Duration of an onset that is resolved, s: k_onset_share times the cube root of the tolerance, between k_onset_time and k_most_onset_time.
+// Positions have an error proportional to the third power of that time (docs/explanation/limit_surface.md, section 7).
 constexpr double k_onset_share = 2.5e-4, k_most_onset_time = 2.5e-6;
-constexpr double k_start_reach = 4.0; // |ν|/δ from which a slip no longer counts as starting
-// k_moving: |ν|/δ from which a starting slip counts as moving. Below it, backward motion is an error of the first steps unless it exceeds
-// k_backward δ, four times the error of velocities in a step (Integrator). A slip that never gets that far, as in a short dip of the
-// clamping pressure, ends there.
+constexpr double k_start_reach = 4.0; // |ν|/δ above which a slip no longer counts as starting
+// k_moving: |ν|/δ above which a starting slip counts as moving. A slip that never reaches it, as in a short dip of the clamping pressure,
+// ends there. k_backward: below k_moving, backward motion up to k_backward δ is an error of the first steps; it is four times the error of
+// velocities in a step (Integrator).
 constexpr double k_moving = 0.2, k_backward = 2e-3;
-constexpr double k_cone = 0.5; // cosine of the angle about the stored direction within which ν may turn before the direction is updated
-// Time |ν|/(grip acceleration) below which a slip ends, s: k_end_time, or k_end_share times the tolerance, at most k_most_end_time. The
-// neglected rest of the slip is proportional to this time and to the remaining change of direction.
+constexpr double k_cone = 0.5; // least cosine of the angle between ν and the stored direction; beyond it the direction is updated
+// Time |ν|/(grip acceleration), s, below which a slip is ending: k_end_share times the tolerance, between k_end_time and k_most_end_time.
+// The neglected rest of the slip is proportional to this time and to the remaining change of direction.
 constexpr double k_end_share = 1e-2, k_most_end_time = 1e-8;
-constexpr double k_no_end = 2.0; // factor on that |ν|: above it the slip has not ended
-// Rounding limits: |ν| relative to velocities at which its direction is lost, and that time relative to t at which steps are still well
-// above rounding.
+constexpr double k_no_end = 2.0; // a slip has not ended if |ν| exceeds the limit of an ending slip by this factor
+// Rounding limits: k_rounded_speed is the |ν|, relative to the velocities of the bodies, at which its direction is lost; k_time_rounding is
+// the time of an onset, relative to t, at which steps are still well above rounding.
 constexpr double k_rounded_speed = 2.5e-13, k_time_rounding = 2e-12;
 
-// Values of FrictionState::stage, initially 0: for a starting slip, and for an ending slip.
+// Values of FrictionState::onset_stage, initially 0: a starting slip is moving; a slip is ending.
 constexpr std::uint8_t k_moving_stage = 1, k_ending_stage = 1;
 
 template <class Visit> void for_each_corner(const Polygon& polygon, Visit visit) {
@@ -63,7 +63,7 @@ Vec3 StepLapFriction::gradient_at(const Pose& pose, double tilt, const Vec3& nu,
   return sum;
 }
 
-/// Returns the velocity of the joint's centre, and ω times the radius of gyration.
+/// Returns the twist as the velocity of the joint's centre, and ω times the radius of gyration, m/s.
 Vec3 StepLapFriction::scaled(const Vec3& nu) const { return {nu[0] - nu[2] * arm_.y(), nu[1] + nu[2] * arm_.x(), gyration_ * nu[2]}; }
 
 void StepLapFriction::set_direction(FrictionState& state, const Vec3& nu) const {
@@ -94,8 +94,8 @@ void StepLapFriction::aim(FrictionState& state, const double* rate) const {
   set_direction(state, Vec3(rate[0], rate[1], rate[2]));
 }
 
-/// Returns the twist for which the slip law is evaluated: ν, with an added part in the stored direction at the start and end of a slip,
-/// where ∇h would be undefined.
+/// Returns the twist for which the slip law is evaluated: ν plus a twist in the stored direction at the start and end of a slip, where ∇h
+/// would be undefined.
 Vec3 StepLapFriction::law_twist(const Evaluation& e, const FrictionState& state, const Vec3& nu) const {
   const Vec3 n(state.direction[0], state.direction[1], state.direction[2]);
   const Vec3 y = scaled(nu);
@@ -136,9 +136,9 @@ void StepLapFriction::slip_events(const Evaluation& e, const FrictionState& stat
   }
 }
 
-// Returns the accuracy to which ν must be known. A small change of direction of ν may change the wrench strongly (narrow sheets; centre of
-// rotation near a corner). The measure is |ν| tr ∇²h in scaled twists. For translation of a round overlap it is 1.5 F: F across the slip
-// and F/2 from rotation (∬ w x² dA is half of F gyration²). If it is larger, the scale of ν is reduced in proportion.
+// Returns the velocity scale that determines the accuracy of ν. A small change of direction of ν may change the wrench strongly (narrow
+// sheets; centre of rotation near a corner). The measure of this is |ν| tr ∇²h in scaled twists: 1.5 F for translation of a round overlap,
+// F across the slip and F/2 from rotation (∬ w x² dA is half of F gyration²). If it is larger, the scale of ν is reduced in proportion.
 SlipScale StepLapFriction::slip_scale(const Evaluation& e, const FrictionState& state, const double* rate) const {
   constexpr double k_round = 1.5;
   SlipScale scale;
@@ -147,15 +147,15 @@ SlipScale StepLapFriction::slip_scale(const Evaluation& e, const FrictionState& 
   const double speed = scaled(nu).norm();
   const Patch& patch = fit(e.scratch, pose_of(e.motion), GripLaw::sliding, pressure_at(e.t).tilt).patch;
   const Mat3 curvature = evaluate(patch, nu).hessian;
-  const Vec3 turn(arm_.y() / gyration_, -arm_.x() / gyration_, 1.0 / gyration_); // ν of a scaled rotation
+  const Vec3 turn(arm_.y() / gyration_, -arm_.x() / gyration_, 1.0 / gyration_); // twist of unit scaled rotation
   const double trace = curvature(0, 0) + curvature(1, 1) + turn.dot(curvature * turn);
   const double sharpness = speed * trace / (k_round * patch.force());
-  // Velocities below the speed of rest need no accuracy.
+  // Below the speed at which a slip ends, velocities need no accuracy.
   scale.speed = std::max(speed / std::max(1.0, sharpness), end_speed(e));
   return scale;
 }
 
-// Returns an upper bound of the damping rates: the trace of A ∇²h is their sum, and none is negative.
+// Returns an upper bound of the damping rates, 1/s: their sum, the trace of A ∇²h, since none is negative.
 double StepLapFriction::max_damping_rate(const Evaluation& e, const FrictionState& state, const double* rate) const {
   const Pose pose = pose_of(e.motion);
   const PressureState now = pressure_at(e.t);
@@ -186,7 +186,7 @@ bool StepLapFriction::continue_slip(const Evaluation& e, FrictionState& state, c
     if (speed <= k_no_end * end) return true;
   } else if (fired == FrictionWatch::first || speed < end) {
     if (fired == FrictionWatch::first) aim(state, rate);
-    else if (along <= 0.0) return rests(); // passed through ν = 0 within a step, along a line
+    else if (along <= 0.0) return rests(); // ν reversed within a step, through ν = 0 along a line
     return goes_on(k_ending_stage);
   }
   state.is_onset = false;
@@ -194,8 +194,8 @@ bool StepLapFriction::continue_slip(const Evaluation& e, FrictionState& state, c
   return true;
 }
 
-// Returns true if the utilisation needs no iteration: a sliding joint has the wrench of the slip law, on the boundary of the sliding law.
-// Its ratio to the static boundary and the maximising twist are known.
+// Returns true if the utilisation needs no iteration: the wrench of a sliding joint is that of the slip law, on the boundary of the kinetic
+// set. Its ratio to the static boundary and the maximising twist are known.
 bool StepLapFriction::knows_usage(const Snapshot& s, const Vec3& wrench) const {
   return !is_elastic() && s.evaluation->friction[index_].phase == FrictionPhase::slip && slip_usage_ == slip_usage_ &&
          !wrench.isZero(0.0) && wrench.allFinite();

@@ -1,11 +1,11 @@
-// Answers of the kinds of elements that are not specific to transformers (mbd/run/kind_views.h).
+// Drawing and check functions of the element kinds that are not specific to transformers (mbd/run/kind_views.h).
 #pragma once
 
 #include "mbd/run/kind_views.h"
 
 namespace steplap {
 
-/// Returns the answers of all kinds of element_catalog().
+/// Returns the functions of all kinds of element_catalog().
 [[nodiscard]] KindViews element_views();
 
 } // namespace steplap

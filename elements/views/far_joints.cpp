@@ -12,7 +12,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_far = 0.1; // relative to the radius of gyration; rounding of given poses is smaller
+constexpr double k_far = 0.1; // largest distance of the ends, relative to the radius of gyration; rounding of given poses is smaller
 
 std::string rounded(double value) {
   char text[40];

@@ -16,11 +16,11 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_one_line = 1e-6;      // tolerance for the directions of contacts whose friction is summed
-constexpr double k_same_load = 0.02;     // tolerance for normal forces of one contact in two independent models
-constexpr double k_same_gravity = 1e-6;  // tolerance for the magnitude of gravity
-constexpr double k_part_of_other = 0.05; // of mu N; a smaller transverse component reduces the capacity by less than 0.1 %, and one plane
-                                         // decides alone
+constexpr double k_one_line = 1e-6;     // tolerance for the direction of contacts whose friction is summed
+constexpr double k_same_load = 0.02;    // tolerance for normal forces of one contact in two independent models
+constexpr double k_same_gravity = 1e-6; // tolerance for the magnitude of gravity
+// Transverse component, relative to mu N, below which one plane decides alone: it reduces the capacity by less than 0.1 %.
+constexpr double k_part_of_other = 0.05;
 
 const CoulombFriction* friction_of(const System& system, const std::string& element) {
   for (const FrictionUnit& unit : system.frictions)
@@ -28,8 +28,8 @@ const CoulombFriction* friction_of(const System& system, const std::string& elem
   return nullptr;
 }
 
-// Normal of the contacts of a friction; zero for a wheel or a removed element. An outline may touch with any of its faces, of which the most
-// level one carries the load.
+// Returns the normal of the contacts of a friction; zero for a wheel or a removed element. An outline may touch with any of its faces; the
+// most level face carries the load.
 Vec2 normal_of(const System& system, const std::string& element, const Vec2& gravity) {
   const CoulombFriction* const friction = friction_of(system, element);
   Vec2 best = Vec2::Zero();
@@ -102,8 +102,8 @@ std::vector<SampledFriction> friction_traces(const Model& whole, const System& s
       trace.mu_static = friction->mu_static, trace.mu_kinetic = friction->mu_kinetic;
     const std::size_t force = rows.column(element + ".friction"), capacity = rows.column(element + ".capacity"),
                       mode = rows.column(element + ".mode");
-    // If a run did not begin at 0, its rows are at multiples of the step on its own time axis.
-    constexpr double k_hair = 1e-6; // of a step
+    // The first row may not be at 0 if the run did not begin there; rows are at multiples of the step on their own time axis.
+    constexpr double k_hair = 1e-6; // tolerance of times, relative to the step
     for (std::size_t i = 0, k = 0; i < rows.size(); ++k) {
       const double t = begin + static_cast<double>(k) * step;
       while (i + 1 < rows.size() && rows.time(i + 1) <= t + k_hair * step) ++i;
@@ -148,7 +148,7 @@ std::string SharedContact::disagreement() const {
     return "gravity is " + quantity_text(a.gravity, "m/s^2") + " in '" + a.model_name + "' and " + quantity_text(b.gravity, "m/s^2") +
            " in '" + b.model_name + "', which share the friction '" + name +
            "': tilt gravity in each plane by the slope of that plane, and leave its size";
-  constexpr double k_level = 1.0 - 1e-9; // cosine of a tilt that is rounding
+  constexpr double k_level = 1.0 - 1e-9; // cosine above which a tilt is rounding
   if (at_rest[0] == 0.0 && at_rest[1] == 0.0 && std::min(a.tilt, b.tilt) < k_level)
     return "the friction '" + name + "' carries nothing at the start, so what the slope takes from its load is not known: begin at rest";
   const double first = at_rest[0] / a.tilt, second = at_rest[1] / b.tilt;
@@ -171,7 +171,8 @@ double SharedContact::normal(const std::array<SampledFriction, 2>& traces, std::
 }
 
 SharedUse shared_use(const SharedContact& contact, const std::array<SampledFriction, 2>& traces) {
-  constexpr double k_unloaded = 1e-6, k_full = 1.0 - 1e-9; // of the load at rest; of mu N
+  // Relative to the load at rest: a lower normal force counts as unloaded; relative to mu N: from here on both planes slip together.
+  constexpr double k_unloaded = 1e-6, k_full = 1.0 - 1e-9;
   const double mu = std::min(traces[0].mu_static, traces[1].mu_static);
   SharedUse found;
   double before = 0.0;

@@ -15,20 +15,20 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_same = 1e-9;     // m; accuracy of typed coordinates
-constexpr double k_straight = 1e-9; // rad
+constexpr double k_same = 1e-9;     // tolerance of points, m: accuracy of typed coordinates
+constexpr double k_straight = 1e-9; // smallest angle of a corner, rad
 
 struct End {
   const SegmentContact* contact = nullptr;
   Vec2 direction = Vec2::Zero(); ///< unit vector from the corner along the segment
 };
 using Rounded = std::array<double, 2>;
-using Track = std::tuple<const Body*, Rounded, const Body*>; // a circle, and the body with the segments
+using Track = std::tuple<const Body*, Rounded, const Body*>; // body of the segments, circle, body of the circle
 
 Rounded rounded(const Vec2& p) { return {std::round(p.x() / k_same), std::round(p.y() / k_same)}; }
 
-// Returns true if the circle, in its given position, is on the inner side of the corner. There it touches both segments and neither end
-// point.
+// Returns true if the circle, in its given position, is on the inner side of the corner, where it touches both segments instead of their
+// common end point.
 bool is_inner(const Vec2& d1, const Vec2& d2, const Vec2& to_circle) {
   const double turn = cross(d1, d2);
   return std::abs(turn) > k_straight && cross(d1, to_circle) * turn > 0.0 && cross(to_circle, d2) * turn > 0.0;

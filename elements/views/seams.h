@@ -6,7 +6,7 @@
 
 namespace steplap {
 
-/// Returns one finding for each circle and body with segments. It names the first such point.
+/// Returns, for each pair of a circle and a body with segments, at most one finding: on the first common end point.
 [[nodiscard]] std::vector<Finding> doubled_corners(const LoadedModel& loaded);
 
 } // namespace steplap

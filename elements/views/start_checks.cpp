@@ -13,9 +13,11 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_leans = 2.0; // times the acceleration due to loads; a body that leans on a stiff stop is near its equilibrium
+// Largest acceleration relative to that due to loads; a body that leans on a stiff stop is near its equilibrium.
+constexpr double k_leans = 2.0;
 
-// A gap, an interference or a preload shifts the contact line, so the position of marker b does not matter.
+// Checks the gap at the start. It can contradict the poses only if a gap, an interference or a preload is given, which shifts the contact
+// line.
 void check_gap(StartScene& scene, const ContactAtStart& contact, const UnilateralContact& foot) {
   if (!(foot.gap || foot.interference || foot.preload)) return;
   const State given = scene.system.initial_state();
@@ -52,7 +54,7 @@ bool is_beside_face(const ContactAtStart& contact) {
   return ends && (*contact.along < ends->x() || *contact.along > ends->y());
 }
 
-// The touching point is behind the line or near it, but beyond the end of the face, and no other contact is below it.
+// Reports a foot whose touching point is behind the line or near it, but beyond the end of the face, with no other contact below it.
 void check_ends(StartScene& scene, const ContactAtStart& contact, const UnilateralContact& foot) {
   if (!foot.ends || !contact.along) return;
   const double beyond = std::max(foot.ends->x() - *contact.along, *contact.along - foot.ends->y());

@@ -13,8 +13,8 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_step_share = 0.01; // permitted error of the couple, as a fraction of N times the distance between the feet
-constexpr double k_same = 1e-9;       // m; accuracy of typed coordinates
+constexpr double k_step_share = 0.01; // largest error of the couple, relative to N times the distance between the feet
+constexpr double k_same = 1e-9;       // tolerance of positions, m: accuracy of typed coordinates
 
 struct Spread {
   double low = 0.0, high = 0.0;
@@ -27,7 +27,7 @@ struct Spread {
   [[nodiscard]] double size() const { return high - low; }
 };
 
-// Height of the contact line along the normal, and position along the line, in b's frame.
+// Adds the height of the contact line along the normal, and the position along the line, both in b's frame.
 void add_foot(const LoadedModel& loaded, const State& given, const UnilateralContact& contact, Spread& height, Spread& way) {
   const Place a = place_of(loaded.model, contact.a), b = place_of(loaded.model, contact.b);
   const Vec3 at = pose_of(*loaded.system, given, a.body), on = pose_of(*loaded.system, given, b.body);

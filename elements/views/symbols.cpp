@@ -49,7 +49,7 @@ void wound_rope(Sketch& s) {
   s.draw({"rope", "", "tension", {*a, *b}, {}, {radius_a, radius_b}});
 }
 
-// A rope end on a drum is not drawn, because the drum is.
+// Draws a rope; its end on a drum is omitted, because the drum is drawn.
 void band(Sketch& s) {
   const auto a = s.place("a"), b = s.place("b"), drum = s.place("drum");
   if (!a || !b || !drum) return;
@@ -116,7 +116,7 @@ void segment_contact(Sketch& s) {
   s.draw({"edge_touch", "", "force", {*a, *b}, {}, {s.number("radius"), first.x(), first.y(), last.x(), last.y(), s.number("thickness")}});
 }
 
-// A flat road has no ends: it extends beyond any picture and is not part of the body's geometry.
+// Draws a flat road as a line that extends beyond any picture. The road is not part of the body's geometry.
 void flat_road(Sketch& s, const MarkerPlace& a, const MarkerPlace& b, double radius) {
   constexpr double k_beyond = 1e3;
   const Vec2 first = b.in_body({-k_beyond * radius, 0.0}), last = b.in_body({k_beyond * radius, 0.0});
@@ -124,7 +124,7 @@ void flat_road(Sketch& s, const MarkerPlace& a, const MarkerPlace& b, double rad
 }
 
 void tyre(Sketch& s) {
-  constexpr int k_parts = 4, k_most_points = 2000; // per piece of a curve; for all pieces together
+  constexpr int k_parts = 4, k_most_points = 2000; // number of line segments per piece of a curve; largest number of all
   const auto a = s.place("a"), b = s.place("b");
   if (!a || !b) return;
   const double radius = s.number("radius");
@@ -142,7 +142,7 @@ void tyre(Sketch& s) {
       s.segment(*b, before, here, 0.0);
       if (sizes.size() == 1) sizes.insert(sizes.end(), {b->in_body(before).x(), b->in_body(before).y()});
       sizes.insert(sizes.end(), {b->in_body(here).x(), b->in_body(here).y()});
-      if (sizes.size() == 5) sizes.push_back(0.0); // thickness
+      if (sizes.size() == 5) sizes.push_back(0.0); // thickness of the segment
       before = here;
     }
   s.draw({"edge_touch", "", "force", {*a, *b}, {}, std::move(sizes)});
@@ -183,7 +183,7 @@ std::vector<Vec2> outline_of_cam(const Sketch& s, const MarkerPlace& follower, c
   const Vec2 along = rotated(axis->normalized(), frame.axes), from_axis = follower.at - cam.at;
   const double start = s.number("start_angle"), now = curve.at(start).value + s.number("gap");
   std::vector<Vec2> corners;
-  double turned = 0.0; // twice the signed area; its sign shows whether the axis is inside
+  double turned = 0.0; // twice the signed area of the outline; its sign shows whether the axis is inside
   for (int i = 0; i < k_corners; ++i) {
     const double turn = 2.0 * std::numbers::pi * i / k_corners;
     const Vec2 place = from_axis + along * (curve.at(start + turn).value - now);
@@ -198,7 +198,7 @@ std::vector<Vec2> outline_of_cam(const Sketch& s, const MarkerPlace& follower, c
   return corners;
 }
 
-// Adds an arrow with the force at the position where the follower is lifted.
+// Draws the cam, with an arrow for the force at the position where the follower is lifted.
 void cam(Sketch& s) {
   const auto a = s.place("a"), b = s.place("b"), turning = s.place("cam");
   if (!a || !b) return;
@@ -206,7 +206,7 @@ void cam(Sketch& s) {
   s.draw({"arrow", "drive", "force", {*a, *b}, s.direction("axis"), {}});
 }
 void freewheel(Sketch& s) { s.draw({"arc", "brake", "couple", s.places(), {}, {}}); }
-// Draws the pitch circles of two wheels on separate axles. Other gears may be whole gear boxes.
+// Draws the pitch circles of two wheels on separate axles. Other gears are not drawn, because they may be complete gearboxes.
 void lossy_gear(Sketch& s) {
   const auto a = s.place("a"), b = s.place("b");
   const double ratio = s.number("ratio"), apart = a && b ? (a->at - b->at).norm() : 0.0;
@@ -242,8 +242,8 @@ void coordinate(Sketch& s, const std::string& style, const std::string& along, c
 
 void motor(Sketch& s) { coordinate(s, "motor", "force", "couple"); }
 void drive(Sketch& s) { coordinate(s, "drive", "reaction", "reaction"); }
-// Draws stops at their positions, measured from the reference pose, or for a distance at its absolute value. A side without a stop has
-// none.
+// Draws stops at their positions, measured from the reference pose, or for a distance at its absolute value. A side that is not limited
+// gets no stop.
 void limit(Sketch& s) {
   coordinate(s, "limit", "force", "couple");
   s.size_last({s.given_number("lower").value_or(-HUGE_VAL), s.given_number("upper").value_or(HUGE_VAL)});

@@ -8,7 +8,7 @@ namespace steplap {
 /// Anchors the rows of friction element f at the pose of `motion`; each row has its own base.
 inline void anchor_friction(const System& system, State& state, int f, const Motion<double>* motion) {
   const FrictionElement& friction = *system.frictions[f].friction;
-  if (system.frictions[f].rope) return; // a rope is held at its length, whatever the pose
+  if (system.frictions[f].rope) return; // the target length of a rope is constant, whatever the pose
   const RowSpec* const rows = friction.rows(state.friction[f]);
   for (int r = 0; r < friction.dimension(); ++r)
     if (rows[r].base >= 0) state.bases[rows[r].base].value = evaluate_row<false>(rows[r], motion).value;

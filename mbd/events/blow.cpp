@@ -13,27 +13,27 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_projection_tolerance = 1e-12; // m, rad
-// Ropes that are closer to their lengths than this, relative to the length, take part in an impact whether or not they lengthen before it.
-// Such a gap is rounding.
+constexpr double k_projection_tolerance = 1e-12; // largest remaining constraint error, m, rad
+// Ropes within this distance of their length, relative to the length, take part in an impact even if they do not lengthen before it. A gap
+// of this size is rounding.
 constexpr double k_same_length = 1e-9;
 constexpr double k_rounded_share = 1e-13;
-// Largest flight of a rope after an impact, relative to its length, that is suppressed: the rope stays taut if its tension allows.
-// Otherwise two ropes that become taut in turn would come to rest only after infinitely many ever smaller impacts; the dead band would even
-// maintain a small speed.
+// A rope that would be slack for a distance smaller than this, relative to its length, after an impact stays taut if its tension allows.
+// Otherwise two ropes that become taut alternately would come to rest only after infinitely many ever smaller impacts.
 constexpr double k_shortest_flight = 1e-9;
 
 double rest_rate(const OneSidedRow& rope, const std::vector<Motion<double>>& motion) {
   return k_rest_velocity + k_rest_share * rope.speed(motion.data());
 }
 
-// Elements that may take part in an impact, with the bounds of their impulses.
+// Elements that may take part in an impact, with lower and upper bounds of their impulses.
 struct ImpactElements {
   std::vector<int> elements;
   std::vector<double> rate, rounding, lower, upper;
-  std::vector<double> acceleration; ///< acceleration without any of these elements
+  std::vector<double> acceleration; ///< relative acceleration of each row without any of these elements
 
-  void add(int f, double at_rate, double rounding_of_it, int refuses) { // the impulse acts against the direction that the element prevents
+  // refuses: sign of the rate that the element prevents; its impulse has the opposite sign
+  void add(int f, double at_rate, double rounding_of_it, int refuses) {
     constexpr double k_any = std::numeric_limits<double>::infinity();
     elements.push_back(f);
     rate.push_back(at_rate);
@@ -45,7 +45,7 @@ struct ImpactElements {
 
 struct LockRate {
   int refuses = 0;
-  double rate = 0.0, rounding = 0.0, rest = 0.0; ///< rad/s; rest: largest rate that counts as zero
+  double rate = 0.0, rounding = 0.0, rest = 0.0; ///< rad/s; rounding: error of the rate; rest: largest rate that counts as zero
   [[nodiscard]] bool is_against() const { return refuses * rate > rest; }
 };
 
@@ -56,8 +56,8 @@ LockRate rate_of(const OneWayLock& lock, const FrictionState& friction, const st
   return {lock.refuses(), m.rate, k_rest_velocity + k_rounded_share * speed, rest_rate(row, m, motion.data())};
 }
 
-// Returns the ropes at their length, and all clutches, since an impact may drive any of them against its lock. Returns nothing if there is
-// no impact.
+// Returns the ropes that are at their length, and all clutches, because an impact may turn any of them against its lock. Returns no
+// elements if no rope is at its length and no clutch turns against its lock.
 ImpactElements struck_in(const System& system, const State& state) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
@@ -98,7 +98,7 @@ BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& l
                        {system.element_names[system.frictions[struck.elements.front()].element]});
 }
 
-// Projects positions and velocities onto everything that is held in the modes of `state`.
+// Projects positions and velocities onto all rows that are constraints in the modes of `state`.
 void meet(Dynamics& dynamics, State& state) {
   std::vector<double> y(static_cast<std::size_t>(dynamics.system().largest_dimension()));
   dynamics.set_state(state);
@@ -114,7 +114,7 @@ bool is_any_driven(const System& system) {
   return false;
 }
 
-// Locks a clutch that took an impulse, at its present angle, and records the impulse.
+// Locks a clutch that took an impulse (phase stick, at its present angle in `after`), and records the impulse in `state`.
 void note_lock(const OneWayLock& lock, int f, double impulse, double rate, State& state, State& after) {
   if (!(std::abs(impulse) > 0.0)) return;
   Impact& impact = state.impacts[lock.impact];
@@ -128,7 +128,7 @@ void note_lock(const OneWayLock& lock, int f, double impulse, double rate, State
   after.bases[row.base].value = evaluate_row<false>(row, motion.data()).value;
 }
 
-// Throws if joints and drives turn a clutch against its lock, which no impulse can prevent.
+// Throws if joints and drives turn a clutch against its lock. Their motion is prescribed, so no impulse can prevent that.
 void check_locks(const System& system, const State& state) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
@@ -142,7 +142,7 @@ void check_locks(const System& system, const State& state) {
   }
 }
 
-// Releases friction, which takes no part of an impact.
+// Sets friction to phase free, because its impulse in an impact is zero.
 void free_friction(const System& system, State& state) {
   for (std::size_t f = 0; f < system.frictions.size(); ++f)
     if (!system.frictions[f].friction->never_slips() && state.friction[f].phase != FrictionPhase::apart)
@@ -150,7 +150,7 @@ void free_friction(const System& system, State& state) {
 }
 
 // Adds dissipation and work of the impact that leads to `after`. With moving drives the dissipation is the kinetic energy of the velocity
-// change, else the loss of kinetic energy.
+// change, otherwise the loss of kinetic energy.
 void book_blow(const System& system, bool is_driven, State& after, State& state) {
   const double gained = system.kinetic_energy(after) - system.kinetic_energy(state);
   State jump = after;

@@ -7,9 +7,9 @@
 // where P is the inverse mass matrix under the constraints of joints and drives. There is no restitution: a rope with Λ > 0 does not
 // lengthen afterwards, a clutch with Λ > 0 is locked.
 //
-// Elements whose force is bounded take no part of the impulse: springs, contacts, clutches with a bounded torque, and friction, whose bound
-// is a multiple of a finite force (a sticking element may slide after the impact). The energy ½ Δvᵀ M Δv = ½ Λᵀu is dissipated. With moving
-// drives, the rest of the change of energy is their work.
+// Elements with a bounded force have no impulse: springs, contacts, clutches with a bounded torque, and friction, whose bound is a multiple
+// of a finite force (a sticking element may slide after the impact). The energy ½ Δvᵀ M Δv = ½ Λᵀu is dissipated. With moving drives, the
+// rest of the change of energy is their work.
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
@@ -20,24 +20,25 @@
 
 namespace steplap {
 
-/// Sets the ropes at the start of a run: taut if they are at their length and do not shorten, else slack. Returns true if a taut rope
-/// lengthens, which requires take_blow(). Throws ElementFailure if the ends of a rope are further apart than its length.
+/// Sets the phases of ropes at the start of a run: taut if they are at their length and do not shorten, otherwise slack. Returns true if a
+/// taut rope lengthens, which requires take_blow(). Throws ElementFailure if the ends of a rope are further apart than its length.
 [[nodiscard]] bool set_ropes(const System& system, State& state);
 
-/// Applies the impact. Changes velocities, phases of ropes, impacts, dissipated energy and work. Phases of friction and clutches stay
-/// unchanged; the caller decides them from the new velocities. Throws ElementFailure if the impulses cannot be determined or drives turn a
-/// clutch against its lock.
+/// Computes the impact of ropes and clutches at `state`. Changes velocities, phases of ropes and of clutches that lock, impacts, dissipated
+/// energy and work. Other phases stay unchanged; the caller decides them from the new velocities. Throws ElementFailure if the impulses
+/// cannot be determined or drives turn a clutch against its lock.
 void take_blow(const System& system, Dynamics& dynamics, State& state);
 
-/// Returns true if the bodies of some clutch turn against its lock faster than counts as rest. This requires take_blow().
+/// Returns true if the bodies of some clutch turn against its lock with a rate above rounding. This requires take_blow().
 [[nodiscard]] bool turns_against_lock(const System& system, const State& state);
 
-/// Applies the impact of joints and drives that become active: their rates jump to the prescribed ones with the least change of velocities
-/// in the metric of kinetic energy, Δv = −M⁻¹Jᵀ(J M⁻¹ Jᵀ)⁻¹(Jv − target). Friction, ropes and clutches take no part; call take_blow()
+/// Computes the impact of joints and drives that become active: their rates jump to the prescribed ones with the least change of velocities
+/// in the metric of kinetic energy, Δv = −M⁻¹Jᵀ(J M⁻¹ Jᵀ)⁻¹(Jv − target). Friction, ropes and clutches have no impulse; call take_blow()
 /// afterwards. The energy ½ Δvᵀ M Δv is dissipated; the rest of the change of energy is work of moving drives.
 void close_rows(const System& system, Dynamics& dynamics, State& state);
 
-/// Impact of a rope or clutch since the impacts were `before`: was there one, and its impulse and energy loss as text (empty if none).
+/// Impact of the rope or clutch `friction` since the impacts were `before`: whether there was one, and its impulse and energy loss as text
+/// (empty if none).
 [[nodiscard]] bool was_struck(const System& system, std::size_t friction, const std::vector<Impact>& before, const State& state);
 [[nodiscard]] std::string blow_text(const System& system, std::size_t friction, const std::vector<Impact>& before, const State& state);
 

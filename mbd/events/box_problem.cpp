@@ -10,10 +10,11 @@ namespace steplap {
 
 namespace {
 
-// Rows of A, scaled to a diagonal of 1, count as dependent if their part independent of the other rows is smaller.
-constexpr double k_dependent = 1e-12;        // squared length, as in SchurSolver::k_dependent
-constexpr double k_rounded_gradient = 1e-13; // relative to the terms of g_i
-constexpr int k_most_steps = 2;              // steps to the minimum for one set of free variables; what remains afterwards is rounding
+// Rows of A, scaled to a diagonal of 1, count as dependent if the squared length of their component orthogonal to the other rows is
+// smaller.
+constexpr double k_dependent = 1e-12;        // same value as SchurSolver::k_dependent
+constexpr double k_rounded_gradient = 1e-13; // rounding of g_i relative to the terms of which it is the sum
+constexpr int k_most_steps = 2; // after two steps to the minimum for one set of free variables, the remaining gradient is rounding
 
 class ActiveSet {
 public:
@@ -38,10 +39,10 @@ private:
   [[nodiscard]] double tolerance(Eigen::Index i) const {
     return rounding_[i] + k_rounded_gradient * (a_.row(i).cwiseAbs().dot(w_.cwiseAbs()) + std::abs(b_[i]));
   }
-  // Returns true if g_i exceeds its rounding.
+  // Returns true if the gradient g of variable i exceeds its rounding error.
   [[nodiscard]] bool pulls(Eigen::Index i, double g) const { return std::abs(g) > tolerance(i); }
 
-  // Moves the free variables to their minimum, or up to the first bound. Returns false if they are there already.
+  // Moves the free variables to their common minimum, or up to the first bound. Returns false if they are already there.
   bool move_free() {
     std::vector<Eigen::Index> free;
     for (Eigen::Index i = 0; i < n_; ++i)
@@ -58,8 +59,9 @@ private:
       for (Eigen::Index j = 0; j < m; ++j) own(i, j) = scale[i] * scale[j] * a_(free[i], free[j]);
     }
     VecX direction = shortest_solution(own, right, k_dependent);
-    const VecX left = right - own * direction; // component in the null space of A, or rounding
-    // Go to the minimum first. As long as it is far, the residual `left` may be its rounding rather than a direction of unbounded decrease.
+    const VecX left = right - own * direction; // component of the gradient in the null space of A, or rounding
+    // Steps to the minimum come first. While the minimum is far, the residual `left` may be its rounding error instead of a direction in
+    // which the objective is unbounded.
     bool is_near = steps_to_minimum_ >= k_most_steps, is_endless = false, is_far = false;
     for (Eigen::Index i = 0; i < m; ++i) {
       is_far = is_far || pulls(free[i], (right[i] - left[i]) / scale[i]);
@@ -92,7 +94,7 @@ private:
     return true;
   }
 
-  // Frees the variable whose g points from its bound to the inside most strongly. Returns false if there is none.
+  // Frees the variable at a bound whose decrease of the objective towards the inside is steepest. Returns false if there is none.
   bool release_one() {
     const VecX g = gradient();
     Eigen::Index worst = -1;
@@ -114,7 +116,7 @@ private:
   const VecX &b_, &lower_, &upper_, &rounding_;
   Eigen::Index n_;
   VecX w_;
-  int steps_to_minimum_ = 0;          ///< for the present set of free variables
+  int steps_to_minimum_ = 0;          ///< steps to the minimum with the present set of free variables
   std::vector<signed char> at_bound_; ///< −1, 1: at the lower or upper bound; 0: free
 };
 

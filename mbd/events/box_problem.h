@@ -1,5 +1,5 @@
 // Convex quadratic problem with bounds: min ½ wᵀA w + bᵀw over |w_i| ≤ c_i, or over lower_i ≤ w_i ≤ upper_i, one of which may be infinite
-// (the tension of a rope has a lower bound of zero only). A is symmetric and positive semidefinite.
+// (the tension of a rope has only the lower bound zero). A is symmetric and positive semidefinite.
 //
 // It is the dual of the mode problem for one-dimensional friction: A is the compliance of the rows of the candidates, b their relative
 // acceleration without friction, and g = A w + b the one with friction. In the solution g_i = 0 if |w_i| < c_i (stick), and g_i is opposed
@@ -8,7 +8,6 @@
 //
 // Method: primal active set, exact after finitely many changes of the set. Free variables move to their common minimum. If the objective is
 // unbounded below, they move along the direction of decrease to the next bound.
-// minimum or, where there is none, along the direction in which the objective falls without end, to the next bound.
 #pragma once
 
 #include "mbd/base/types.h"
@@ -21,8 +20,8 @@ namespace steplap {
 struct BoxSolution {
   VecX w;                    ///< minimiser
   VecX g;                    ///< A w + b
-  std::vector<char> is_free; ///< g_i = 0 up to rounding: the variable is not pressed against a bound
-  bool is_solved = false;    ///< false: the active sets repeated (by rounding) and no solution was found
+  std::vector<char> is_free; ///< g_i = 0 up to rounding: no bound is active
+  bool is_solved = false;    ///< false: no solution was found, because the active sets repeated (by rounding)
 };
 
 /// Solves the problem with |w_i| ≤ c_i. `rounding`: error of each b_i.

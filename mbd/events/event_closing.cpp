@@ -11,22 +11,24 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_samples = 130;
-constexpr int k_free_samples = 60;         // after these only bisection is used; the remaining 70 close any bracket
-constexpr int k_patience = 6;              // evaluations that need not halve the bracket
-constexpr double k_least_reach = 4.0;      // in spacings of t, the difference of neighbouring floating-point times
-constexpr double k_tolerance_share = 1e-6; // share of the tolerance, relative to the step: errors of the motion are larger anyway
-constexpr double k_most_tolerance = 1e-3;  // larger tolerances only serve to get steps of a fixed length
-constexpr double k_unexpected = 16.0;      // factor on the expected error; a larger change of the estimate is rounding
-constexpr double k_most_rounding = 1e-8;   // in θ; a larger change is not rounding
-constexpr double k_wider = 8.0;            // factor on the half-width if the root is not inside
-constexpr int k_polish = 3;                // secant steps inside a bracket that needed a larger half-width
-constexpr double k_closed = 4.0;           // width of a closed bracket, in half-widths
+constexpr int k_free_samples = 60;    // maximum number of samples by interpolation; then at most 70 bisections follow
+constexpr int k_patience = 6;         // consecutive samples that may fail to halve the bracket before a bisection
+constexpr double k_least_reach = 4.0; // smallest half-width of the bracket, in spacings of floating-point numbers at t
+// Location error of the root, as fraction of the tolerance relative to the step; errors of the motion are larger.
+constexpr double k_tolerance_share = 1e-6;
+constexpr double k_most_tolerance = 1e-3; // larger tolerances, used only to obtain steps of a fixed length, do not increase this error
+// an estimate that changes by more than this multiple of the predicted error is affected by rounding
+constexpr double k_unexpected = 16.0;
+constexpr double k_most_rounding = 1e-8; // upper limit of such a change, in θ; a larger change is not rounding
+constexpr double k_wider = 8.0;          // factor on the half-width if the root lies outside the bracket
+constexpr int k_polish = 3;              // secant steps after the half-width had to be increased
+constexpr double k_closed = 4.0;         // width of a closed bracket, in half-widths
 
 } // namespace
 
-// Root finding. Polynomials through all samples of the fired functions estimate the next root. Once the estimate is known to the spacing of
-// t, a millionth of the tolerance, or the rounding of the values, one sample just beyond it closes the bracket, if its value and slope show
-// that the root is that near. Otherwise one sample on either side does.
+// Root finding. Polynomials through the last samples of the fired functions estimate the next root. The estimate has converged when its
+// error is below the spacing of t, a millionth of the tolerance, or the rounding of the values. Then one sample just beyond it closes the
+// bracket, if value and slope there show that the root lies within the half-width; otherwise one sample on either side does.
 void EventFinder::locate_root(Integrator& integrator, Dynamics& dynamics) {
   const double spacing =
       2.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(integrator.t1()), integrator.h()) / integrator.h();
@@ -41,13 +43,13 @@ void EventFinder::locate_root(Integrator& integrator, Dynamics& dynamics) {
   for (int count = 0; count < k_max_samples; ++count) {
     const double width = high_.theta - low_.theta;
     if (width <= std::max(spacing, k_closed * at_first.half_width)) return;
-    // A half-width that was increased may be larger than rounding, so the bracket is refined by secants.
+    // An increased half-width may exceed the rounding error, so the bracket is refined by secants.
     const bool is_closed = count < k_free_samples && iteration_.is_converged && width <= k_closed * iteration_.half_width;
     if (is_closed && polished++ == k_polish) return;
     double theta = 0.5 * (low_.theta + high_.theta);
     const bool is_known_beyond = high_.theta - iteration_.root <= 2.0 * iteration_.half_width;
     const bool is_below = is_known_beyond && iteration_.root - low_.theta > high_.theta - iteration_.root;
-    // A kink or a pole inside the bracket must not stall the search: bisection follows after k_patience evaluations.
+    // Bisection after k_patience unsuccessful samples, because a kink or a pole in the bracket may stall interpolation.
     if (is_closed) theta = secant_estimate();
     else if (iteration_.is_converged && count < k_free_samples)
       theta = is_below ? iteration_.root - iteration_.half_width : iteration_.root + iteration_.half_width;
@@ -63,7 +65,7 @@ void EventFinder::locate_root(Integrator& integrator, Dynamics& dynamics) {
     if (!is_beyond) fired_ = fired_before_;
     std::swap(is_beyond ? high_ : low_, middle_);
     if (is_beyond && iteration_.is_converged && is_root_just_before(high_, k_closed * at_first.half_width)) return;
-    if (iteration_.is_converged && !is_closed && is_beyond == is_below) { // the root is still on the same side
+    if (iteration_.is_converged && !is_closed && is_beyond == is_below) { // the root is still on the same side of the estimate
       iteration_.root = theta;
       iteration_.half_width *= k_wider;
       if (iteration_.half_width > k_most_rounding) iteration_ = at_first; // the estimate had not converged
@@ -86,7 +88,7 @@ bool EventFinder::is_root_just_before(const Sample& beyond, double half_width) c
 double EventFinder::secant_estimate() const {
   double share = 1.0;
   for (const int slot : fired_) share = std::min(share, low_.event_value[slot] / (low_.event_value[slot] - high_.event_value[slot]));
-  // Keep away from the ends, where the values are rounding.
+  // The ends are avoided, because the values there are rounding errors.
   return low_.theta + std::clamp(share, 0.1, 0.9) * (high_.theta - low_.theta);
 }
 
@@ -104,8 +106,8 @@ double EventFinder::next_estimate(double middle) {
     theta = std::min(theta, estimate_.root(low_.theta, high_.theta, 0.25 * iteration_.half_width));
   }
   if (std::isnan(theta)) return middle;
-  // The previous sample was at an estimate too, so the distance between the estimates is its error. The ratio of this error to the one
-  // before predicts the error of the present estimate. A distance much larger than predicted is rounding.
+  // The distance to the previous estimate is the error of that estimate. The ratio of successive errors predicts the error of the present
+  // one. A distance much larger than predicted is rounding.
   const double distance = std::abs(theta - iteration_.root);
   if (iteration_.count >= 3 && distance > k_unexpected * iteration_.expected && distance < k_most_rounding) {
     iteration_.half_width = std::max(iteration_.half_width, 2.0 * distance);

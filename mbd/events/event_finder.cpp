@@ -9,8 +9,8 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_usual_intervals = 128; // number of parts that a survey holds without allocation
-// Factor on the constraint residual before projection. Dense output inside a step has the same error in the joints, and larger ones in
+constexpr int k_usual_intervals = 128; // capacity for intervals that a survey reserves in advance
+// Error of joints in dense output, relative to the constraint residual at the end of the step before projection. The factor covers
 // measurements with longer levers.
 constexpr double k_off_joints = 10.0;
 
@@ -55,7 +55,7 @@ void EventFinder::stored_sample(const Integrator& integrator, bool is_last, Samp
   for (double& rate : sample.rate) rate *= integrator.h();
 }
 
-// Returns true if the slot belongs to a joint inside a cluster; these are not evaluated at every stage.
+// Returns true if the slot belongs to a joint inside a cluster. Such joints are not evaluated at every stage.
 bool EventFinder::is_merged(const Dynamics& dynamics, int slot) {
   if (!are_merged_known_) {
     std::fill(merged_.begin(), merged_.end(), 0);
@@ -74,7 +74,7 @@ EventFinder::Screening EventFinder::screen(Integrator& integrator, const Dynamic
   const double h = integrator.h();
   for (int i = 0; i < slots_; ++i) {
     const double low = nodes.low(i);
-    if (2.0 * low > nodes.high(i)) continue; // far
+    if (2.0 * low > nodes.high(i)) continue; // test 1 of event_finder.h: far from zero
     const double w0 = integrator.event_value0()[i], w1 = integrator.event_value1()[i];
     const double start = fresh[i] ? std::max(w0, 0.0) : w0;
     const EventStep watched{i,
@@ -83,8 +83,8 @@ EventFinder::Screening EventFinder::screen(Integrator& integrator, const Dynamic
                             {start, h * integrator.event_derivative0()[i]},
                             {w1, h * integrator.event_derivative1()[i]}};
     if (w1 < 0.0) {
-      // A simple sign change. A function that is fresh, or negative at the start (rounding, or the projection at another event), must be
-      // surveyed.
+      // A simple sign change needs no survey. A survey is necessary if the function is fresh, or negative at the start (by rounding, or by
+      // the projection at another event).
       const bool is_plain = !fresh[i] && w0 >= 0.0 && nodes.crosses_once(watched);
       worst = std::max(worst, is_plain ? Screening::at_end : Screening::inside);
       if (!is_plain) surveyed_slots_.push_back(i);
@@ -97,7 +97,7 @@ EventFinder::Screening EventFinder::screen(Integrator& integrator, const Dynamic
   return worst;
 }
 
-// Puts armed slots that are ≥ 0 in `low` and negative in `high` into fired_.
+// Stores in fired_ the armed slots that are ≥ 0 in `low` and negative in `high`.
 bool EventFinder::find_sign_changes(const Sample& low, const Sample& high) {
   fired_.clear();
   for (int i = 0; i < slots_; ++i)
@@ -155,8 +155,8 @@ bool EventFinder::find(Integrator& integrator, Dynamics& dynamics, const std::ve
   is_merged_near_ = is_any_merged_near(integrator, dynamics);
   Bracket bracket = suspected == Screening::inside ? survey(integrator, dynamics, fresh) : bracket_whole(integrator);
   if (bracket == Bracket::none) return false;
-  // A function between −tolerance_ and zero at the start of the bracket that does not recover has passed zero before; the event is there. A
-  // function that was negative at the start of the step ends its mode at once.
+  // A function between −tolerance_ and zero at the start of the bracket, which does not become positive again, has passed zero before; the
+  // event is at that start. A function that was negative at the start of the step ends its mode at once.
   const auto has_passed = [&](int slot) {
     return armed_[slot] != 0 && fresh[slot] == 0 && integrator.event_value0()[slot] >= 0.0 && low_.event_value[slot] < 0.0;
   };

@@ -45,7 +45,7 @@ public:
   [[nodiscard]] bool is_step_withdrawn() const { return is_step_withdrawn_; }
 
   [[nodiscard]] double theta() const { return theta_; }                  ///< θ at which the step ends
-  [[nodiscard]] const std::vector<double>& state() const { return y_; }  ///< packed state there, from dense output, not projected
+  [[nodiscard]] const std::vector<double>& state() const { return y_; }  ///< packed state at theta(), from dense output, not projected
   [[nodiscard]] const std::vector<int>& fired() const { return fired_; } ///< slots that have become negative, ascending
 
 private:
@@ -68,16 +68,16 @@ private:
   };
   /// Reason to split a part: function `slot` may be negative near `position`.
   struct Split {
-    double position = -1.0; ///< relative position in the part, 0 … 1; −1: no reason
+    double position = -1.0; ///< relative position in the interval, 0 … 1; −1: no reason
     int slot = -1;
     double error = 0.0;
     int stalled = 0;
   };
-  /// Interpolant of one event function on the present part.
+  /// Interpolant of one event function on the present interval.
   struct Interpolant {
     int slot = -1;
     int stalled = 0;
-    std::size_t from = 0, to = 0; ///< nodes between which it has to be positive
+    std::size_t from = 0, to = 0; ///< nodes between which the function has to be positive
     bool has_fired = false;       ///< the function is negative at node to + 1
     PartPolynomial polynomial;
   };
@@ -124,7 +124,7 @@ private:
   double theta_ = 0.0;
   bool is_step_withdrawn_ = false;
   std::vector<double> y_, dy_;
-  Sample low_, high_, middle_; ///< ends of the bracket and a sample in between
+  Sample low_, high_, middle_; ///< ends of the bracket and a sample inside
   static constexpr std::size_t k_history = 7;
   std::array<Sample, k_history> history_; ///< last samples, in a ring; the root is estimated from them
   std::size_t history_count_ = 0;
@@ -140,19 +140,19 @@ private:
   };
   RootIteration iteration_;
   static constexpr std::size_t k_node_count = PartPolynomial::k_order + 1;
-  std::array<Sample, k_node_count> nodes_; ///< samples at the interpolation nodes of the present part
+  std::array<Sample, k_node_count> nodes_; ///< samples at the interpolation nodes of the present interval
   /// Tolerance below zero, per slot. A dip that is no deeper and recovers within the step is no event. Accuracy of velocities for
   /// slip rates, as given by ForceGroup::event_tolerance() for units, zero for all others.
   std::vector<double> tolerance_;
-  std::vector<int> place_slots_, rate_slots_; ///< slots of units with EventTolerance::position and EventTolerance::velocity
-  std::vector<char> is_of_joint_;             ///< per slot: belongs to friction of dimension 3
+  std::vector<int> place_slots_, rate_slots_; ///< slots with EventTolerance::position; slots with EventTolerance::velocity
+  std::vector<char> is_of_joint_;             ///< per slot: belongs to friction of dimension 3 (step-lap joint)
   std::vector<int> surveyed_slots_;           ///< slots to be surveyed
-  std::vector<char> merged_;                  ///< per slot: belongs to a merged joint; filled at the first use in a step
+  std::vector<char> merged_;                  ///< per slot: belongs to a joint inside a cluster; computed at the first use in a step
   bool are_merged_known_ = false;             ///< merged_ is valid for this step
   std::vector<Interpolant> interpolants_;     ///< interpolants of the functions in surveyed_slots_ on the present part
   std::vector<Interval> intervals_;           ///< stack of parts still to be surveyed; the earliest is on top
-  bool is_merged_near_ = false;               ///< a merged joint may slip in this step, so every sample evaluates merged joints
-  std::vector<char> armed_, armed_before_;    ///< per slot: armed; the same at the start of the present part
+  bool is_merged_near_ = false;               ///< a joint inside a cluster may slip in this step, so every sample evaluates such joints
+  std::vector<char> armed_, armed_before_;    ///< per slot: armed; value at the start of the present interval
   std::vector<int> fired_, fired_before_;
 };
 

@@ -16,15 +16,15 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_projection_tolerance = 1e-12; // m, rad
-// Limit of rest, as the ratio of the velocity change by settle() to the remaining slip rate. Two rows can be nearly parallel without being
-// equal, such as those of two feet of a slightly tilted box: holding both then stops the rotation too, and a remaining slip rate ε changes
-// velocities by ε divided by the small angle. A change of more than 1000 ε is real motion, so the slip has not ended.
+constexpr double k_projection_tolerance = 1e-12; // largest remaining constraint error, m, rad
+// An ended slip is accepted if settle(), which sets its remaining rate ε to zero, changes velocities by at most this multiple of ε. Two
+// rows can be nearly parallel, such as those of two feet of a slightly tilted box; setting the rates of both to zero then also stops the
+// rotation, which changes velocities by ε divided by the small angle. A larger change is real motion, so the slip has not ended.
 constexpr double k_most_taken = 1e3;
-// Least margin, relative to the bound, of friction that certainly sticks; a thousand times the accuracy of wrenches.
+// An element certainly sticks if its margin relative to the bound is larger; a thousand times the accuracy of wrenches.
 constexpr double k_inside = 1e-9;
 
-// Calls f(row, its measure) for each sticking element of dimension 1.
+// Calls f(row, value and rate of the row) for each sticking element of dimension 1.
 template <class F> void for_each_held(const System& system, const State& state, const std::vector<Motion<double>>& motion, const F& f) {
   for (std::size_t i = 0; i < system.frictions.size(); ++i) {
     const FrictionElement& friction = *system.frictions[i].friction;
@@ -34,8 +34,8 @@ template <class F> void for_each_held(const System& system, const State& state, 
   }
 }
 
-// Returns true if settle() changed velocities only by the order of the remaining slip rates (k_most_taken), so that the elements really came
-// to rest. If not, a slip goes on: its rate only seemed to change sign, because velocities have errors.
+// Returns true if settle() changed velocities by at most k_most_taken times the remaining slip rates, so that the elements really came to
+// rest. Otherwise the slip continues: its rate changed sign only because velocities have errors.
 bool is_slight(const System& system, const State& before, const State& after) {
   std::vector<Motion<double>> motion;
   double left = 0.0, taken = 0.0;
@@ -52,9 +52,9 @@ bool is_slight(const System& system, const State& before, const State& after) {
   return taken <= k_most_taken * left;
 }
 
-// Several elements reached their bounds at the same instant and all were released. Those that slide drop from μ_s to μ_k, and this may
-// unload others. An unloaded element has no slip rate yet and returns to the phase in `before`. If it is then not inside its static bound,
-// it is released for good, so no set of modes is tried twice.
+// Several elements reached their bounds at the same instant and all were released. Those that slide drop from μ_s to μ_k, which may unload
+// others. An unloaded element has no slip rate yet and returns to its phase in `before`. If it then exceeds its static bound, it is
+// released finally, so no set of modes is tried twice.
 void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& modes, EventTransaction& event) {
   const std::vector<FrictionState>& before = event.friction_before;
   State& state = event.now;
@@ -62,7 +62,7 @@ void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& mode
   const LoadSharing* const sharing = dynamics.sharing();
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const bool is_let_go = before[f].phase == FrictionPhase::stick && state.friction[f].phase == FrictionPhase::slip;
-    const bool is_alone = !sharing || sharing->group_of(static_cast<int>(f)) < 0; // a group is released as a whole
+    const bool is_alone = !sharing || sharing->group_of(static_cast<int>(f)) < 0; // elements of a group are released together, not singly
     if (is_let_go && is_alone && system.frictions[f].bounded && !system.frictions[f].rope) begun.push_back(static_cast<int>(f));
   }
   if (begun.size() < 2) return;
@@ -72,7 +72,8 @@ void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& mode
     dynamics.relative_motion(f, modes.rates(), &rate, &acceleration, &rounding);
     if (!(state.friction[f].sign * acceleration > rounding)) relieved.push_back(f);
   }
-  if (relieved.size() == begun.size()) return; // if no μ_k is below μ_s, all begin without acceleration and stay released
+  // no element slides: without a drop from μ_s to μ_k all accelerations at the onset are zero, and all stay released
+  if (relieved.size() == begun.size()) return;
   const std::vector<FrictionState> released = state.friction;
   while (!relieved.empty()) {
     state.friction = released;
@@ -89,7 +90,8 @@ void hold_relieved(const System& system, Dynamics& dynamics, FrictionModes& mode
 
 } // namespace
 
-// In one dimension the two event functions are bound − λ and bound + λ, so the share is |λ|/bound; in three the first one is 1 − u.
+// In one dimension the two event functions are bound − λ and bound + λ, so the utilisation is |λ|/bound. In three dimensions the first
+// event function is 1 − u.
 double share_of_bound(const FrictionUnit& unit, const std::vector<double>& event_value) {
   const double one = event_value[unit.slot(FrictionWatch::first)], other = event_value[unit.slot(FrictionWatch::second)];
   return unit.friction->dimension() == 1 ? 1.0 - 2.0 * std::min(one, other) / (one + other) : 1.0 - one;
@@ -111,8 +113,8 @@ void EventHandler::slip_rates(const State& state, const Motion<double>* motion, 
   for (int r = 0; r < friction.dimension(); ++r) rate[r] = evaluate_row<false>(rows[r], motion).rate;
 }
 
-// Element f has gained its normal force. Sets its contact point by the pose (it was not monitored without force), the anchor there, and its
-// phase: sticking or sliding as the bodies move.
+// Element f has gained its normal force. Sets its contact point for the present pose (it was not monitored without force), its anchor, and
+// its phase: stick or slip according to the present velocities.
 void EventHandler::load(EventTransaction& event, int f) {
   FrictionState& friction = event.now.friction[f];
   const FrictionElement& element = *system_.frictions[f].friction;
@@ -140,7 +142,8 @@ void EventHandler::forget_moved_layouts(const State& state) {
     if (state.friction[f].phase == FrictionPhase::slip && system_.frictions[f].friction->is_rigid()) return dynamics_.clear_layouts();
 }
 
-// Projects the state onto joints and drives with all friction released. Which elements slide depends on the resulting velocities.
+// Projects positions and velocities onto joints and drives, with all friction released, because the resulting velocities decide which
+// elements slide.
 void EventHandler::meet_constraints(State& state) {
   for (FrictionState& friction : state.friction)
     if (friction.phase != FrictionPhase::apart) friction.phase = FrictionPhase::free;
@@ -168,7 +171,7 @@ void EventHandler::start(State& state) {
     take_blow(system_, dynamics_, state);
     record_blows(system_.initial_impacts, state);
     modes_.evaluate(state);
-    begin_units(state); // the impact changes velocities, on which modes of dampers and formulas depend
+    begin_units(state); // impact changes velocities, on which the initial modes of dampers and formulas depend
   }
   modes_.evaluate(state);
   const std::vector<int> no_slots;
@@ -185,7 +188,7 @@ void EventHandler::start(State& state) {
   (void)modes_.decide(state);
   const auto slips = [](const FrictionState& friction) { return friction.phase == FrictionPhase::slip; };
   if (std::any_of(state.friction.begin(), state.friction.end(), slips))
-    modes_.evaluate(state); // decide() may end with the evaluation of a trial state
+    modes_.evaluate(state); // necessary because decide() may end with the evaluation of a trial state
   clear_fresh();
 }
 
@@ -196,7 +199,8 @@ bool EventHandler::switch_units(EventTransaction& event, const std::vector<int>&
     const int u = unit_of_slot_[slot];
     if (u < 0) continue;
     const Unit& unit = system_.units[u];
-    // Inside a step, joints are satisfied only to its tolerance. An event function that is not zero once they are satisfied was no event.
+    // Dense output satisfies the joints only to a tolerance. If the event function is clearly positive after projection, there was no
+    // event.
     if (unit.group->event_tolerance(slot - unit.first_event) != EventTolerance::none && dynamics_.event_value()[slot] > 0.5 * k_met)
       continue;
     const UnitMode from = state.mode[u];
@@ -220,17 +224,17 @@ void EventHandler::list_unit_change(int u, UnitMode from, UnitMode to, double t,
   const Unit& unit = system_.units[u];
   const EventKind kind = unit.group->event_kind(from, to);
   if (kind != EventKind::none) events.push_back({t, system_.element_names[unit.element], kind});
-  const EventKind slide = sliding_of(*unit.group, to); // a contact that closes and slides at once
+  const EventKind slide = sliding_of(*unit.group, to); // a contact may close and slide at the same time
   if (!is_slip(kind) && slide != EventKind::none && slide != sliding_of(*unit.group, from))
     events.push_back({t, system_.element_names[unit.element], slide});
 }
 
-// Changes the phase of element f, whose event function `fired` became negative.
+// Applies the transition of element f whose event function `fired` became negative.
 void EventHandler::change_phase(EventTransaction& event, int f, FrictionWatch fired) {
   State& state = event.now;
   const FrictionUnit& unit = system_.frictions[f];
   FrictionState& friction = state.friction[f];
-  if (unit.rope) { // The rope becomes slack. Ropes that become taut are handled by an impact.
+  if (unit.rope) { // the rope becomes slack; a rope that becomes taut is handled by an impact
     friction.phase = FrictionPhase::slip;
     friction.sign = 0;
   } else if (fired == FrictionWatch::contact_point) {
@@ -249,14 +253,14 @@ void EventHandler::change_phase(EventTransaction& event, int f, FrictionWatch fi
     slip_rates(state, event.motion(), f, rate);
     if (unit.friction->continue_slip(dynamics_.evaluation(), friction, rate, fired)) return;
     modes_.end_slip(state, f);
-    friction.phase = FrictionPhase::stick; // or it reverses: the mode problem decides
+    friction.phase = FrictionPhase::stick; // provisional: the mode problem decides whether the slip reverses instead
     if (unit.friction->dimension() == 1) modes_.note_rest(f, rate[0]);
   }
 }
 
-// The contact point of element f has moved to another point of its bodies. If that point has a velocity, the element slides with it:
-// sticking there would require an impact, and a slip may have the opposite direction. If the contact point only approximates a face, the
-// velocity error of this approximation does not count.
+// The contact point of element f has moved to another point of its bodies. If the velocity there is not zero, the element slides with it:
+// sticking would require an impact, and a slip may have the opposite direction. If the contact point only approximates a face, the velocity
+// error of this approximation counts as zero.
 void EventHandler::move_on(EventTransaction& event, int f, const FrictionState& from) {
   FrictionState& friction = event.now.friction[f];
   const FrictionElement& element = *system_.frictions[f].friction;
@@ -274,7 +278,7 @@ void EventHandler::move_on(EventTransaction& event, int f, const FrictionState& 
   element.aim(friction, &m.rate);
 }
 
-// Updates friction elements that gained or lost their normal force by contacts or signals.
+// Updates friction elements whose normal force began or ended because a contact or a signal changed.
 void EventHandler::update_loading(EventTransaction& event) {
   if (!event.is_loading_changed) return;
   State& state = event.now;
@@ -309,7 +313,7 @@ EventKind EventHandler::slip_kind(std::size_t f, const FrictionState& old, const
   return old.phase == FrictionPhase::slip ? EventKind::slips_another_way : EventKind::slips;
 }
 
-// Returns true if slip needs a force in at least one direction.
+// Returns true if the support function is positive in some direction, that is, sliding meets resistance.
 bool EventHandler::has_capacity(const State& state, std::size_t f) const {
   const FrictionElement& friction = *system_.frictions[f].friction;
   for (int r = 0; r < friction.dimension(); ++r) {
@@ -336,7 +340,7 @@ void EventHandler::note_start(const State& state, std::vector<Event>& events) co
 
 namespace {
 
-// Adds the events of a rope: it became taut, slack, or taut and slack again at once.
+// Adds the events of a rope: it became taut, slack, or taut and immediately slack again.
 void note_rope(const System& system, const OneSidedUnit& unit, FrictionPhase phase_before, const std::vector<Impact>& impacts_before,
                const State& state, std::vector<Event>& events) {
   const OneSidedRow& rope = *unit.row;
@@ -347,7 +351,7 @@ void note_rope(const System& system, const OneSidedUnit& unit, FrictionPhase pha
   if ((was_taut || is_caught) && !is_taut) events.push_back({state.t, name, EventKind::enters_gap});
 }
 
-// Returns the slots that were ≥ 0 and are negative now.
+// Returns the slots that are ≥ 0 in `before` and negative in `now`.
 std::vector<int> fallen(const std::vector<double>& before, const std::vector<double>& now) {
   std::vector<int> slots;
   for (std::size_t i = 0; i < now.size(); ++i)
@@ -355,8 +359,8 @@ std::vector<int> fallen(const std::vector<double>& before, const std::vector<dou
   return slots;
 }
 
-// Computes event functions of units from each body's own motion. An evaluation would already use one common motion for bodies that a joint
-// is about to connect.
+// Computes the event functions of units from the separate motions of the bodies. Dynamics would already use one common motion for bodies
+// that a joint is about to connect.
 void evaluate_separated_joint_events(const System& system, const State& state, std::vector<double>& event_value) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
@@ -377,7 +381,7 @@ void evaluate_separated_joint_events(const System& system, const State& state, s
 
 } // namespace
 
-// Adds events for changes of friction element f. Returns true if anything changed except a rope's tension.
+// Adds events for changes of friction element f. Returns true if its phase, contact point or slip direction has changed. Not for ropes.
 bool EventHandler::list_friction_change(std::size_t f, const FrictionState& old, const std::vector<Impact>& impacts_before,
                                         const State& state, std::vector<Event>& events) {
   const FrictionState& now = state.friction[f];
@@ -426,7 +430,7 @@ void EventHandler::settle_phases(State& state) {
   forget_moved_layouts(state);
   settle(state);
   (void)modes_.decide(state);
-  std::fill(fresh_.begin(), fresh_.end(), 1); // none of the event functions was followed up to here
+  std::fill(fresh_.begin(), fresh_.end(), 1); // no event function has been monitored up to this state
 }
 
 void EventHandler::note_changes(const State& before, const State& state, std::vector<Event>& events) {
@@ -440,7 +444,7 @@ void EventHandler::list_changes(const State& before, const State& state, std::ve
   for (std::size_t f = 0; f < state.friction.size(); ++f) (void)list_friction_change(f, before.friction[f], before.impacts, state, events);
 }
 
-// Adds changes of units, and slips of elements that stick in both states but slipped in between.
+// Adds mode changes of units, and slips of elements that stick in both states but slipped in between.
 void EventHandler::list_changes_within(const State& before, const State& state, std::vector<Event>& events) const {
   for (std::size_t u = 0; u < system_.units.size(); ++u)
     if (before.mode[u] != state.mode[u]) list_unit_change(static_cast<int>(u), before.mode[u], state.mode[u], state.t, events);
@@ -460,8 +464,8 @@ void EventHandler::fail_on_pulley(EventTransaction& event, int f) const {
   throw rope_has_run_in(event.now.t, system_.element_names[rope.row.element], one, next);
 }
 
-// Applies the transition of every friction slot that fired. Ropes that became taut are only noted: resolve_rope_impacts() follows. Throws if
-// a rope has run into a pulley.
+// Applies the transition of every friction slot that fired. Ropes that became taut are only flagged; resolve_rope_impacts() computes their
+// impact. Throws if a rope has run into a pulley.
 void EventHandler::change_phases(EventTransaction& event) {
   const LoadSharing* const sharing = dynamics_.sharing();
   std::vector<char> is_released(sharing ? sharing->groups().size() : 0, 0), has_fired(system_.frictions.size(), 0);
@@ -477,13 +481,13 @@ void EventHandler::change_phases(EventTransaction& event) {
     }
     if (rope && watch == OneSidedRow::k_on_pulley) fail_on_pulley(event, f);
     const int group = sharing && watch != FrictionWatch::contact_point ? sharing->group_of(f) : -1;
-    if (group >= 0 && watch == FrictionWatch::second) continue; // the rows separate; the mode problem finds out how
-    if (group >= 0) {                                           // fires in the slots of all elements of the group
+    if (group >= 0 && watch == FrictionWatch::second) continue; // the rows of the group separate; the mode problem decides how
+    if (group >= 0) {                                           // the same event fires in the slots of all elements of the group
       if (!is_released[group]) modes_.release(event.now, group);
       is_released[group] = 1;
       continue;
     }
-    // If both slots of an element fired, only the first counts: it changes the phase to which the second belongs.
+    // If both slots of an element fired, only the first counts: its transition changes the phase to which the second belongs.
     if (watch != FrictionWatch::contact_point) {
       if (has_fired[f]) continue;
       has_fired[f] = 1;
@@ -495,7 +499,7 @@ void EventHandler::change_phases(EventTransaction& event) {
   if (!event.fired.empty()) modes_.forget_evaluation();
 }
 
-// Applies an impact and updates modes of contacts and phases of friction for the new velocities.
+// Applies an impact, and updates modes of contacts and phases of friction for the new velocities.
 void EventHandler::strike(EventTransaction& event, Blow blow) {
   State& state = event.now;
   modes_.evaluate(state);
@@ -532,7 +536,8 @@ void EventHandler::resolve_rope_impacts(EventTransaction& event) {
   if (event.is_any_tight) strike(event, Blow::ropes);
 }
 
-// Returns slots that a jump made negative, of units that follow jumps. A unit that has already switched in this event does not switch back.
+// Returns the slots that became negative by a jump, of units with discontinuous event functions. Units that have already switched in this
+// event are excluded, so that they do not switch back.
 std::vector<int> EventHandler::slots_made_negative_by_jump(const EventTransaction& event, const std::vector<double>& before) const {
   std::vector<int> slots = fallen(before, dynamics_.event_value());
   std::erase_if(slots, [&](int slot) {
@@ -542,13 +547,13 @@ std::vector<int> EventHandler::slots_made_negative_by_jump(const EventTransactio
   return slots;
 }
 
-// A signal jumps at a breakpoint. Units whose event functions it makes negative switch.
+// At a breakpoint a signal jumps. Units whose event functions become negative by this switch their mode.
 void EventHandler::follow_breakpoint(EventTransaction& event) {
   if (event.event_value_before) switch_units(event, slots_made_negative_by_jump(event, *event.event_value_before));
 }
 
-// A formula jumps where one of its comparisons changes. Other comparisons may change as a consequence, and so on. The state is evaluated in
-// the previous modes, and switches are repeated until none follows. Each comparison switches once at most, so this ends.
+// A formula jumps where one of its comparisons changes, and other comparisons may change as a consequence. The state is therefore evaluated
+// in the new modes, and units switch, until none switches any more. Each comparison switches at most once, so this ends.
 void EventHandler::follow_jumps(EventTransaction& event) {
   const auto has_jumped = [&] {
     for (std::size_t slot = 0; slot < event.has_switched.size(); ++slot)
@@ -563,7 +568,7 @@ void EventHandler::follow_jumps(EventTransaction& event) {
   } while (switch_units(event, slots_made_negative_by_jump(event, before)));
 }
 
-// The mode problem assumes elements at rest, so the remaining rate of a slip that ended is removed first.
+// Sets the remaining rates of ended slips to zero, because the mode problem assumes elements at rest.
 void EventHandler::stop_ended_slips(EventTransaction& event) {
   if (!event.is_any_at_rest) return;
   const State unsettled = event.now;
@@ -578,7 +583,7 @@ void EventHandler::stop_ended_slips(EventTransaction& event) {
   }
 }
 
-// Friction that has come to rest at the same instant, because others did, and would reverse, becomes a candidate of the mode problem.
+// Friction that comes to rest at the same instant as other elements, and would reverse, becomes a candidate of the mode problem.
 void EventHandler::catch_reversals(EventTransaction& event) {
   if (!modes_.catch_reversals(event.now, event.friction_before)) return;
   settle(event);
@@ -589,7 +594,7 @@ void EventHandler::decide_phases(EventTransaction& event) {
   if (!modes_.decide(event.now)) event.is_settled = false;
 }
 
-// Projects the state onto rows that stick since this event.
+// Projects the state onto the rows of elements that began to stick in this event.
 void EventHandler::meet_new_rows(EventTransaction& event) {
   if (!event.is_settled && has_new_rows(event.friction_before, event.now)) settle(event);
 }
@@ -599,8 +604,8 @@ void EventHandler::record_blows(const std::vector<Impact>& impacts_before, const
     if (was_struck(system_, f, impacts_before, state)) blows_.push_back({state.t, system_.element_names[system_.frictions[f].element]});
 }
 
-// Records ties of friction elements. Ropes and locked clutches have no bound and are excluded. Groups that share a load are excluded too,
-// since their event functions are common to all elements.
+// Records pairs of which one element began to slip while the other stuck close to its bound. Ropes and locked clutches have no bound and
+// are excluded, as are groups that share a load, because all elements of a group have the same event functions.
 void EventHandler::record_simultaneous_slips(const EventTransaction& event) {
   if (event.event_value_at.empty()) return;
   const std::vector<FrictionState>&before = event.friction_before, &now = event.now.friction;
@@ -634,15 +639,15 @@ void EventHandler::begin_event() {
   modes_.begin_event();
 }
 
-// The rules of an event, in their order. Units switch first, because their forces load friction. What has fired or come to rest changes its
-// phase next, and the mode problem decides last, for all friction together. The state is evaluated and projected once for each set of modes
-// that is tried, at most events twice. The next step starts from the last evaluation.
+// Rules of an event, in their order. Units switch first, because their forces load friction. Friction that fired or came to rest changes
+// its phase next. Finally the mode problem decides all friction together. The state is evaluated and projected once for each set of modes
+// that is tried, in most events twice. The next step starts from the last evaluation.
 void EventHandler::handle(State& state, const std::vector<int>& fired, const std::vector<double>* event_value_before,
                           std::vector<Event>& events) {
   begin_event();
   EventTransaction event(system_, state, fired, events);
   event.event_value_before = event_value_before;
-  event.is_loading_changed = fired.empty(); // at a breakpoint a signal may begin or cease to press
+  event.is_loading_changed = fired.empty(); // at a breakpoint the normal force of a signal may begin or end
   forget_moved_layouts(state);
   modes_.evaluate(state);
   const auto sticks = [](const FrictionState& friction) { return friction.phase == FrictionPhase::stick; };
@@ -658,7 +663,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
   record_simultaneous_slips(event);
 }
 
-// Elements that were inactive have their initial mode and do not stick. Modes and phases of all are decided here.
+// Elements activated by an action have their initial mode and do not stick. Modes and phases of all elements are decided here.
 void EventHandler::take_over(State& state, bool closes_rows, std::vector<Event>& events) {
   begin_event();
   const std::vector<int> no_slots;
@@ -669,7 +674,7 @@ void EventHandler::take_over(State& state, bool closes_rows, std::vector<Event>&
   conclude(event);
 }
 
-// Decides all friction after modes of units are known and ended slips are at rest.
+// Decides all friction. Precondition: modes of units are set and ended slips are at rest.
 void EventHandler::conclude(EventTransaction& event) {
   update_loading(event);
   catch_reversals(event);
@@ -678,7 +683,8 @@ void EventHandler::conclude(EventTransaction& event) {
   meet_new_rows(event);
 }
 
-// Returns true if an element sticks that did not before, or at another contact point. The state is not yet projected onto its rows.
+// Returns true if an element sticks that did not stick before, or did so at another contact point: the state must then be projected onto
+// its rows.
 bool EventHandler::has_new_rows(const std::vector<FrictionState>& before, const State& state) {
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
     const FrictionState &old = before[f], &now = state.friction[f];
@@ -687,7 +693,8 @@ bool EventHandler::has_new_rows(const std::vector<FrictionState>& before, const 
   return false;
 }
 
-// Projects the state onto the sticking rows. Their residual velocities have the size of errors; the energy lost counts as dissipated.
+// Projects the state onto the sticking rows. Their residual velocities are of the order of errors; the kinetic energy lost is added to the
+// dissipation.
 void EventHandler::settle(EventTransaction& event) {
   settle(event.now);
   event.velocities_changed();

@@ -1,5 +1,5 @@
-// Handles events: switches modes of contacts, contact points and phases of friction, and then decides the phases of all affected friction
-// elements together.
+// Handles events: switches modes of contacts, contact points and phases of friction. The phases of all affected friction elements are
+// decided together.
 #pragma once
 
 #include "mbd/events/event_transaction.h"
@@ -24,42 +24,42 @@ public:
   /// Appends events for contacts and friction elements that slide from the start. Precondition: start(). Friction elements without capacity
   /// are not reported.
   void note_start(const State& state, std::vector<Event>& events) const;
-  /// Handles an event at `state`: changes modes, phases and anchors, and appends events. `fired`: slots of the event functions that became
-  /// negative; empty at a breakpoint of a signal, where loads may jump. `event_value_before`: all event functions just before a breakpoint,
-  /// else null.
+  /// Handles an event at `state`: changes modes, phases and anchors, and appends to `events`. `fired`: slots of the event functions that
+  /// became negative; empty at a breakpoint of a signal, where loads may jump. `event_value_before`: all event functions just before a
+  /// breakpoint, otherwise null.
   void handle(State& state, const std::vector<int>& fired, const std::vector<double>* event_value_before, std::vector<Event>& events);
-  /// Takes over a state from another system at the same time (mbd/simulation/changeover.h), in which some elements were active that are not
-  /// now, or the reverse. `closes_rows`: new constraints may cause an impact.
+  /// Continues with a state converted from another system at the same time (mbd/simulation/changeover.h), in which other elements were
+  /// active. `closes_rows`: new constraints may cause an impact.
   void take_over(State& state, bool closes_rows, std::vector<Event>& events);
-  /// Decides phases at acceleration level after a method that decides modes and phases itself (time stepping).
+  /// Decides all friction phases from accelerations. For use after a method that determines modes and phases itself (time stepping).
   void settle_phases(State& state);
-  /// Appends the changes between two states, for such a method, and updates fresh().
+  /// Appends the changes between two states of such a method, and clears fresh().
   void note_changes(const State& before, const State& state, std::vector<Event>& events);
-  /// Appends the events that lead from one state to the other. It changes nothing else except stop_reason(). Precondition: the system has
-  /// no inextensible ropes.
+  /// Appends the events that lead from one state to the other. Changes nothing else except stop_reason(). Precondition: the system has no
+  /// inextensible ropes.
   void list_changes(const State& before, const State& state, std::vector<Event>& events);
 
-  /// Returns flags per slot: the unit or friction element changed in the last handle(). For EventFinder.
+  /// Returns a flag per slot: the unit or friction element changed in the last handle(). Input of EventFinder.
   [[nodiscard]] const std::vector<char>& fresh() const { return fresh_; }
-  /// Returns which element ended the run and why; empty if none did.
+  /// Returns the element that ended the run and the reason, as text; empty if none did.
   [[nodiscard]] const std::string& stop_reason() const { return stop_reason_; }
-  /// Returns the kinetic energy removed in the last handle() by projecting residual velocities of sticking elements, J.
+  /// Returns the kinetic energy, J, removed in the last handle() by setting residual velocities of sticking elements to zero.
   [[nodiscard]] double settled() const { return settled_; }
-  /// Returns true if the last evaluation belongs to the final state of handle(). packed() and rates() are then valid.
+  /// Returns true if the last evaluation was made at the final state of handle(). packed() and rates() are then valid.
   [[nodiscard]] bool is_evaluated() const { return modes_.is_evaluated(); }
   [[nodiscard]] const double* packed() const { return modes_.packed(); }
   [[nodiscard]] const double* rates() const { return modes_.rates(); }
-  /// Returns the ties of the last handle(): sticking elements with a utilisation above 1 − k_near_bound.
+  /// Returns the simultaneous slips of the last handle(): `sticks` has a utilisation above 1 − k_near_bound.
   [[nodiscard]] const std::vector<SimultaneousSlip>& ties() const { return ties_; }
   static constexpr double k_near_bound = 1e-3;
-  /// Returns the ropes and clutches struck in the last start(), handle() or take_over().
+  /// Returns the ropes and clutches with an impulse in the last start(), handle() or take_over().
   [[nodiscard]] const std::vector<RigidBlow>& blows() const { return blows_; }
   void clear_fresh() { std::fill(fresh_.begin(), fresh_.end(), 0); }
 
 private:
   enum class Blow { ropes, rows };
 
-  // Rules of an event. handle() has their order.
+  // Rules of an event, called by handle() in their order.
   bool switch_units(EventTransaction& event, const std::vector<int>& slots);
   void follow_breakpoint(EventTransaction& event);
   void follow_jumps(EventTransaction& event);

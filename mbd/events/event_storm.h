@@ -1,5 +1,5 @@
-// Detects event storms: too many events of one element in a window of time. The window is a share of the typical time between other changes
-// of the model (Simulation::storm_window). An element with fewer events is simulated from event to event.
+// Detects event storms: too many events of one element within a time window. The window is a fraction of the typical time between other
+// changes of the model (RunLeg::storm_window). Elements with fewer events are simulated from event to event.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace steplap {
 
-/// Event times of each element, the last k_limit of them.
+/// The last k_limit event times of each element.
 class EventStorm {
 public:
   /// Records an event of `element` at t, s. Returns true if the last k_limit events of the element lie within `window`, s.
@@ -20,13 +20,13 @@ public:
     const double oldest = times[next_[element] % k_limit];
     return t - oldest < window;
   }
-  /// Resets the count, after an interval of time stepping.
+  /// Clears all event times, after an interval of time stepping.
   void clear() {
     times_.clear();
     next_.clear();
   }
 
-  static constexpr std::size_t k_limit = 50; ///< a decaying bounce has about 40 events above rounding
+  static constexpr std::size_t k_limit = 50; ///< a decaying bounce has about 40 events before they reach rounding
 
 private:
   std::unordered_map<std::string, std::vector<double>> times_;

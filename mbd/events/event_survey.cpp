@@ -34,16 +34,17 @@ constexpr double k_margin_if_rough = 0.3, k_rough = 1e-3;
 constexpr double k_stalled = 0.9;
 constexpr int k_most_stalled = 4;
 constexpr int k_most_intervals = 400; // limit of the work in one step
-// θ from which on a function that is fresh or starts negative can be armed, because dense output does not resolve smaller changes.
-// A function that never becomes positive is reported here.
+// Smallest θ at which a function that is fresh or starts negative can become armed, because dense output does not resolve smaller changes.
+// If such a function is still negative there, the event is at this θ.
 constexpr double k_arming_theta = 1e-4;
-// Two flanks of a sine, such as the end of an arm that turns past a thin wall, dip below the point where their tangents meet: by δ³/3 at a
-// distance δ from it, 2 % of the value there between nodes of a step that turns by a radian. So tangents that meet below this share of the
-// larger of the two values count as well. A kink may lie there, too.
+// Allowance for functions that lie below their tangents. Two flanks of a sine, such as the end of an arm that turns past a thin wall, dip
+// below the intersection of their tangents: by δ³/3 at a distance δ from it, which is 2 % of the value there between nodes of a step that
+// turns by one radian. An intersection below this fraction of the larger of the two values therefore counts as negative, also because of a
+// possible kink.
 constexpr double k_of_flanks = 0.05;
-constexpr double k_node_clearance = 0.25; // smallest distance of a check point from a node, in gaps between nodes: g = p at the nodes
-// Factor from the deviation |g − p| at the check point to the new E: between the first two nodes the deviation reaches only about a
-// quarter of that in the middle of a part.
+constexpr double k_node_clearance = 0.25; // smallest distance of a check point from a node, relative to the gap: at the nodes g = p
+// New E relative to the deviation |g − p| at the check point: between the first two nodes the deviation reaches only about a quarter of
+// that in the middle of an interval.
 constexpr double k_error_factor = 4.0;
 constexpr double k_no_check_above = 0.25; // a function whose minimum is above this share of its largest value needs no check
 
@@ -86,8 +87,9 @@ void EventFinder::fit_interpolants(const Interval& interval, std::size_t last) {
     PartPolynomial::Values values;
     for (std::size_t k = 0; k < k_node_count; ++k) values[k] = nodes_[k].event_value[slot];
     interpolant.polynomial.fit(values);
-    if (interpolant.polynomial.largest() == 0.0) continue; // bodies that touch and do not move: zero is not negative
-    // Only the function that caused the split can stall: an error that does not fall is rounding, as of an unloaded contact, or a jump.
+    if (interpolant.polynomial.largest() == 0.0) continue; // bodies that touch and do not move: a constant zero is not negative
+    // Only the function that caused the split can stall. An error that does not decrease is rounding, as for an unloaded contact, or a
+    // jump.
     const bool is_stalled = slot == interval.slot && interpolant.polynomial.error() > k_stalled * interval.error;
     interpolant.stalled = is_stalled ? interval.stalled + 1 : 0;
     if (interpolant.stalled < k_most_stalled) interpolants_.push_back(interpolant);
@@ -186,7 +188,7 @@ std::size_t EventFinder::sample_nodes(Integrator& integrator, Dynamics& dynamics
   return last;
 }
 
-// Arms the functions that are positive at θ. Closer to the start than k_arming_theta the sign is not reliable.
+// Arms the functions that are positive at θ, unless θ is below k_arming_theta, where the sign is not reliable.
 void EventFinder::arm_positive(double theta, const std::vector<double>& event_value) {
   if (theta < k_arming_theta) return;
   for (int i = 0; i < slots_; ++i)
@@ -263,7 +265,8 @@ EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynam
   for (int parts = 0; !intervals_.empty(); ++parts) {
     const Interval interval = intervals_.back();
     intervals_.pop_back();
-    if (parts >= k_most_intervals && interval.begin > 0.0) { // too much work: the step ends at low_, up to which no event was found
+    // Limit of the work in one step: the step ends at low_; no event was found up to there.
+    if (parts >= k_most_intervals && interval.begin > 0.0) {
       fired_.clear();
       high_ = low_;
       return Bracket::immediate;

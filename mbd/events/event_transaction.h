@@ -1,4 +1,4 @@
-// One event while it is handled: the state before and now, what fired, and what the rules of EventHandler have found so far.
+// Data of one event while EventHandler handles it: the state before and now, the slots that fired, and intermediate results.
 #pragma once
 
 #include "mbd/events/event.h"
@@ -23,12 +23,12 @@ struct EventTransaction {
   std::vector<double> event_value_at;                      ///< event functions at the event, before any change; only if two elements stick
 
   std::vector<char> has_switched;  ///< per slot: the unit has switched its mode
-  bool is_loading_changed = false; ///< a contact or a signal may press friction that was free, or the reverse
-  bool is_any_tight = false;       ///< a rope has reached its length
+  bool is_loading_changed = false; ///< normal forces may have begun or ended, because a contact or a signal changed
+  bool is_any_tight = false;       ///< a rope has reached its full length
   bool is_any_at_rest = false;     ///< a slip has ended
-  bool is_settled = false;         ///< the state satisfies the rows of its modes
+  bool is_settled = false;         ///< the state satisfies the rows of all sticking elements
 
-  /// Returns the motions of the bodies. They are computed once; call velocities_changed() after a change of poses or velocities.
+  /// Returns the motions of the bodies, computed at the first call. Call velocities_changed() after a change of poses or velocities.
   [[nodiscard]] const Motion<double>* motion() {
     if (!is_placed_) place_bodies(now.q, now.v, motion_);
     is_placed_ = true;

@@ -16,26 +16,26 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_sweeps = 20000;
-// Relative change at which the wrenches have converged to rounding. The remaining error is the conditioning of A.
+// Relative change below which wrenches have converged to rounding. The remaining error is determined by the conditioning of A.
 constexpr double k_settled = 1e-15;
-// Three-dimensional blocks are solved to about 1e-11 only, and sweeps fluctuate at that level. So sweeps also end after this many without
-// progress, once the change is small.
+// Blocks of three-dimensional elements are solved only to about 1e-11, and sweeps fluctuate at that level. Sweeps therefore also end after
+// this many without a smaller change, if the change is below k_small_change.
 constexpr int k_stalled_sweeps = 20;
 constexpr double k_small_change = 1e-9;
-// Relative velocity, m/s, that counts as rest if an event or a drive stops several elements at once: rounding of the event time and error
-// of the projection.
+// Relative velocity, m/s, that counts as rest if an event or a drive stops several elements at once. It covers the rounding of the event
+// time and the error of the projection.
 constexpr double k_rest_at_event = 1e-11;
-// Largest relative change of accelerations by one more sweep; beyond it they have not converged.
+// Accelerations have converged if one more sweep changes them by less than this, relative to their terms.
 constexpr double k_settled_acceleration = 1e-7;
-// Least value of the second event function of a group for rejoining. It is 1 if its rows are compatible exactly. Rows that begin to
-// separate are at zero with rounding of either sign, and would be held and released without end.
+// Elements of a group (LoadSharing) rejoin only if the group's second event function is above this value. It is 1 if the rows are exactly
+// compatible. At a limit of zero, rows that begin to separate would be held and released endlessly by rounding.
 constexpr double k_surely_together = 0.5;
-// Factor on the residual rate with which an element came to rest; it is also the error of rows that depend on it.
+// Factor on the residual rate with which an element came to rest. It covers the error of rows that depend on the element.
 constexpr double k_rest_error = 2.0;
 
-// Dual problem for a set of candidates. If all are one-dimensional, an active-set method gives the exact solution (box_problem.h).
-// Otherwise block Gauss–Seidel solves each element's block exactly in turn. It converges for every positive semidefinite A. The
-// accelerations are unique even if the wrenches are not.
+// Dual problem for a set of candidates (friction_modes.h). If all are one-dimensional, an active-set method gives the exact solution
+// (box_problem.h). Otherwise block Gauss–Seidel solves each element's block exactly in turn; this converges for every positive semidefinite
+// A. The accelerations are unique even if the wrenches are not.
 class DualProblem {
 public:
   DualProblem(const System& system, const State& state, const std::vector<int>& elements, const Evaluation& evaluation,
@@ -73,7 +73,7 @@ private:
       for (Eigen::Index j = 0; j < n; ++j) a(i, j) = candidates_.compliance[i * n + j];
     }
     const BoxSolution solution = solve_box_problem(a, b, lower, upper, rounding);
-    if (!solution.is_solved) return sweep_until_settled(); // its active sets repeat by rounding
+    if (!solution.is_solved) return sweep_until_settled(); // rounding made the active sets repeat
     for (Eigen::Index i = 0; i < n; ++i) {
       BlockSolution& block = blocks_[i];
       block = {};
@@ -115,7 +115,7 @@ private:
       least = std::min(least, change);
       if (stalled >= k_stalled_sweeps && least <= k_small_change * size) return;
     }
-    // If wrenches are not unique they may change without end although the accelerations have converged, so one more sweep tests the
+    // If wrenches are not unique they may change endlessly although the accelerations have converged, so one more sweep tests the
     // accelerations.
     const std::vector<double> before = wrench_;
     double change = 0.0, size = 0.0;
@@ -163,7 +163,7 @@ private:
   bool is_flat_ = true; ///< all elements are one-dimensional
 };
 
-// Releases a rope that would have to push although its constraint is satisfied: other ropes carry its load. Returns true if there is one.
+// Releases one rope with negative tension (other ropes carry its load). Returns true if there was one.
 bool slacken_idle(const System& system, const Dynamics& dynamics, State& state) {
   for (const auto& [rope, f] : one_sided_rows(system)) {
     if (state.friction[f].phase != FrictionPhase::stick || dynamics.event_value()[system.frictions[f].slot(FrictionWatch::first)] >= 0.0)
@@ -181,8 +181,8 @@ FrictionModes::FrictionModes(const System& system, Dynamics& dynamics)
     : system_(system), dynamics_(dynamics), y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()),
       rest_error_(system.frictions.size(), 0.0) {}
 
-// Returns the error of the rate of element f at rest. In a group some dependent rows are left out of the equations; they keep the residual
-// rate of the others.
+// Returns the error of the rate of element f at rest. In a group dependent rows are omitted from the equations, so they keep the residual
+// rates of the other rows.
 double FrictionModes::rest_error(int f) const {
   const LoadSharing* const sharing = dynamics_.sharing();
   const int group = sharing ? sharing->group_of(f) : -1;
@@ -197,7 +197,7 @@ void FrictionModes::set_anchor(State& state, int f) const {
   anchor_friction(system_, state, f, motion_.data());
 }
 
-// Within one slip the direction does not change, so distances can be added.
+// Adds the distance to the slid path; within one slip the direction is constant.
 void FrictionModes::end_slip(State& state, int f) const {
   const RowSpec* rows = system_.frictions[f].friction->rows(state.friction[f]);
   const double before = rows[0].base >= 0 ? state.bases[rows[0].base].value : 0.0;
@@ -218,7 +218,7 @@ std::vector<int> FrictionModes::violated(const State& state) {
   return held_beyond(state);
 }
 
-// Returns the sticking elements with a negative event function in the last evaluation.
+// Returns the sticking elements with a negative event function at the last evaluation.
 std::vector<int> FrictionModes::held_beyond(const State& state) const {
   std::vector<int> result;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
@@ -229,7 +229,7 @@ std::vector<int> FrictionModes::held_beyond(const State& state) const {
   return result;
 }
 
-// Solves the mode problem for the candidates, with all other elements unchanged, and sets their phases.
+// Solves the mode problem for the candidates, with the phases of all other elements unchanged, and sets the candidates' phases.
 void FrictionModes::solve(State& state, const std::vector<int>& candidates) {
   for (const int f : candidates) state.friction[f].phase = FrictionPhase::free;
   dynamics_.set_state(state);
@@ -332,7 +332,7 @@ bool FrictionModes::catch_reversals(State& state, const std::vector<FrictionStat
   for (const int f : slow) {
     double rate = 0.0, acceleration = 0.0, rounding = 0.0;
     dynamics_.relative_motion(f, dy_.data(), &rate, &acceleration, &rounding);
-    if (state.friction[f].sign * acceleration > rounding) continue; // the slip has only begun
+    if (state.friction[f].sign * acceleration > rounding) continue; // the element begins to slide
     end_slip(state, f);
     state.friction[f].phase = FrictionPhase::stick;
     is_any = true;
@@ -340,7 +340,7 @@ bool FrictionModes::catch_reversals(State& state, const std::vector<FrictionStat
   return is_any;
 }
 
-// Groups whose rows are compatible only at rest: releases the elements that move, in the direction of their motion.
+// Handles groups whose rows are no longer compatible: releases the elements that move, in the direction of their motion.
 void FrictionModes::let_go_moving(State& state) {
   bool is_any = false;
   const LoadSharing* const sharing = dynamics_.sharing();
@@ -361,8 +361,8 @@ void FrictionModes::let_go_moving(State& state) {
   if (is_any) (void)violated(state);
 }
 
-// Groups whose rows are compatible at rest but have drifted since they were anchored, by less than counts as motion: anchors them at the
-// present pose.
+// Handles groups whose rows are compatible but have drifted since they were anchored, by less than counts as motion: anchors the rows at
+// the present pose.
 void FrictionModes::anchor_resting(State& state) const {
   const LoadSharing* const sharing = dynamics_.sharing();
   if (!sharing) return;
@@ -389,7 +389,7 @@ bool FrictionModes::decide(State& state) {
 }
 
 void FrictionModes::settle_candidates(State& state, std::vector<int> candidates) {
-  // The set of candidates only grows, except when a group is released, which happens to an element only once.
+  // The set of candidates only grows, except when a group is released, which happens at most once to each element.
   const std::size_t most = (system_.frictions.size() + 1) * (system_.frictions.size() + 1);
   for (std::size_t pass = 0; !candidates.empty(); ++pass) {
     if (pass > most) throw NumericalFailure("friction modes cannot be decided at t = " + rounded_text(state.t, 12) + " s");
@@ -397,7 +397,7 @@ void FrictionModes::settle_candidates(State& state, std::vector<int> candidates)
     std::vector<int> more = violated(state);
     const bool is_any_over = !more.empty();
     std::erase_if(more, [&](int f) { return std::find(candidates.begin(), candidates.end(), f) != candidates.end(); });
-    // Candidates that stick by the mode problem but are overloaded: rounding, or a group, which limit analysis decides.
+    // Candidates that stick in the mode problem but exceed their bounds: by rounding, or in a group, which limit analysis decides.
     if (more.empty() && is_any_over && slacken_idle(system_, dynamics_, state)) {
       candidates = violated(state);
     } else if (more.empty()) {

@@ -1,9 +1,9 @@
 // Decides which friction elements stick and which begin to slip, for all of them together.
 //
 // At zero relative velocity the accelerations minimise Gauss' function plus the support functions of the admissible sets (theory.md §3).
-// Here the dual is solved: find wrenches w in ΠK_e that minimise ½ wᵀA w + bᵀw, with A the constrained compliance of the candidates' rows
-// and b their relative acceleration without friction. A w + b is the relative acceleration with friction, zero for elements that stick.
-// Only elements whose sticking wrench is not admissible, and those that they affect, enter the problem.
+// This class solves the dual problem: find wrenches w in ΠK_e that minimise ½ wᵀA w + bᵀw, with A the constrained compliance of the
+// candidates' rows and b their relative acceleration without friction. A w + b is the relative acceleration with friction, zero for
+// elements that stick. Candidates are the elements whose sticking wrench is not admissible, and those that they affect.
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
@@ -19,13 +19,14 @@ class FrictionModes {
 public:
   FrictionModes(const System& system, Dynamics& dynamics);
 
-  /// Decides the phases of all elements in phase stick at the pose and velocity of `state`; those in phase slip stay so. Leaves `dynamics`
-  /// on the layout of the result. Returns true if all of them stick as they were. Throws NumericalFailure if the problem cannot be solved.
+  /// Decides the phases of all elements in phase stick at the pose and velocity of `state`; elements in phase slip are unchanged. Leaves
+  /// `dynamics` in the layout of the result. Returns true if all of them still stick. Throws NumericalFailure if the problem cannot be
+  /// solved.
   bool decide(State& state);
 
   /// Evaluates `dynamics` in the modes and at the pose and velocity of `state`, with all event functions.
   void evaluate(const State& state);
-  /// Invalidates the evaluation. Call it when the state changes or `dynamics` is used for something else.
+  /// Marks the evaluation as invalid. To be called when the state changes or `dynamics` is used otherwise.
   void forget_evaluation() { is_evaluated_ = false; }
   /// Returns true if the last evaluation belongs to the present state and modes.
   [[nodiscard]] bool is_evaluated() const { return is_evaluated_; }
@@ -33,8 +34,8 @@ public:
   [[nodiscard]] const double* packed() const { return y_.data(); }
   [[nodiscard]] const double* rates() const { return dy_.data(); }
 
-  /// Releases the elements of a group (LoadSharing) that slip when it is overloaded. Precondition: `dynamics` was last evaluated at
-  /// `state`.
+  /// Sets the elements of an overloaded group (LoadSharing) to slip that slide according to limit analysis. Precondition: `dynamics` was
+  /// last evaluated at `state`.
   void release(State& state, int group) const;
 
   /// Records that element f came to rest at this event with the residual rate `rate`, which is the error of the event time and of the
@@ -42,13 +43,13 @@ public:
   void note_rest(int f, double rate) { rest_error_[f] = std::abs(rate); }
   void begin_event() { std::fill(rest_error_.begin(), rest_error_.end(), 0.0); }
 
-  /// Lets elements in phase slip stick if they are at rest, because others hold them, and if the group which they form can carry the load.
-  /// Returns true if there are any.
+  /// Sets elements in phase slip to stick if they are at rest because others hold them, and if their group can carry the load. Returns true
+  /// if there are any.
   bool rejoin(State& state);
 
-  /// Finds one-dimensional elements in phase slip that have come to rest and would reverse, which happens to geared elements at the same
-  /// instant. They get phase stick and so become candidates. `before`: states before the event; elements that begin to slip now are at rest
-  /// too but are excluded. Returns true if there are any.
+  /// Finds one-dimensional elements in phase slip that have come to rest and would reverse, as geared elements do at the same instant. Sets
+  /// them to phase stick, so that they become candidates. `before`: states before the event, which exclude elements at rest because they
+  /// begin to slip now. Returns true if there are any.
   bool catch_reversals(State& state, const std::vector<FrictionState>& before);
 
   /// Anchors the rows of element f at the present pose.

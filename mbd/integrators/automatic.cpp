@@ -18,22 +18,28 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_loose = 1e-5;     // tolerance above which order 5 is cheaper than order 8
-constexpr double k_limited = 0.8;    // stability share from which a step counts as limited by stability
-constexpr int k_steps_limited = 5;   // consecutive limited steps before the change; the share of an accurate step is well below
+constexpr double k_loose = 1e-5;  // tolerance above which order 5 is cheaper than order 8
+constexpr double k_limited = 0.8; // stability share from which a step counts as limited by stability
+// Consecutive limited steps before the implicit method continues; accurate steps have shares far below k_limited.
+constexpr int k_steps_limited = 5;
 constexpr int k_steps_implicit = 60; // implicit steps before the explicit method is tried again
 constexpr double k_worth = 6.0;      // cost of an implicit step relative to an explicit one
 // Stability share of an accurate dop853 step on an oscillation at tolerance 1e-8; proportional to the eighth root of the tolerance.
 constexpr double k_accurate_share = 0.26;
-constexpr double k_suspicious = 2.0;       // multiple of this share, on average, above which accuracy is unlikely to be the cause
-constexpr double k_memory = 1.0 / 16.0;    // weight of the last step in running averages
-constexpr int k_steps_before_trial = 32;   // initially; long enough for the averages to refer to these steps
-constexpr long k_most_before_trial = 1024; // an unsuccessful trial costs some 40 explicit steps, so at most 4 %
-// The methods are compared after this many steps, however accurate the steps seem, because the accurate share is known for oscillations
-// only. The number is multiplied by four after each unsuccessful trial, so that all trials together cost a few percent of a long run.
+// Factor on k_accurate_share: a higher mean share indicates that stability, not accuracy, limits the step.
+constexpr double k_suspicious = 2.0;
+constexpr double k_memory = 1.0 / 16.0; // weight of the last step in running averages
+// Explicit steps before the first trial of the implicit method, so that the averages cover these steps only.
+constexpr int k_steps_before_trial = 32;
+// Upper limit of steps between trials: an unsuccessful trial costs about 40 explicit steps, so at most 4 %.
+constexpr long k_most_before_trial = 1024;
+// After this many explicit steps the implicit method is tried even if the steps seem accurate, because k_accurate_share is known for
+// oscillations only. The number is multiplied by four after each unsuccessful trial, so that all trials together cost a few percent of a
+// long run.
 constexpr long k_steps_before_any = 128;
 constexpr int k_steps_to_grow = 8; // steps of a resumed method until its length is representative, with a growth of up to six per step
-constexpr double k_grows = 1.2;    // growth from step to step: after an event a trial begins with short steps
+// Steps that grow by more than this factor are not compared: after an event a trial begins with short steps.
+constexpr double k_grows = 1.2;
 
 class Automatic final : public Integrator {
 public:
@@ -129,7 +135,8 @@ private:
     last_step_ = h_;
   }
 
-  // Returns true if the explicit method is slower than accuracy requires. The implicit method must then be faster than this.
+  // Returns true if the implicit method should be tried: either its last known step was so much longer that it would be faster, or the
+  // mean stability share is too high for a step that accuracy limits.
   [[nodiscard]] bool is_trial_due() const {
     if (steps_explicit_ >= k_steps_to_grow && k_worth * h_ < implicit_step_ && k_worth * mean_step_ < implicit_step_) return true;
     if (steps_explicit_ >= steps_before_any_ && mean_share_ > 0.5 * suspicious_share_) return true;
@@ -138,14 +145,15 @@ private:
 
   void choose(Dynamics& dynamics) {
     const bool is_explicit = active_ == explicit_.get();
-    // The stiffness of a slip law varies with the slip velocity and ends before a trial would pay.
+    // No trial while friction depends on slip velocity: the stiffness of a slip law ends before the trial would pay.
     const bool is_trial = is_explicit && count_ < k_steps_limited && is_trial_due() && !(dynamics.slip_decay_rate() > 0.0);
     if (count_ < (is_explicit ? k_steps_limited : k_steps_implicit) && !is_trial) return;
     count_ = 0;
     is_started_ = false;
     if (!is_explicit) {
       const bool is_in_vain = implicit_->steps() - implicit_steps_before_ <
-                              k_steps_implicit / 2; // ended early: each step that was too short counted like several
+                              // Fewer steps: the trial was ended by short steps, each of which adds k_steps_implicit / 6 to count_.
+                              k_steps_implicit / 2;
       if (is_trial_) steps_before_trial_ = is_in_vain ? std::min(2 * steps_before_trial_, k_most_before_trial) : k_steps_before_trial;
       if (is_trial_) steps_before_any_ = is_in_vain ? 4 * steps_before_any_ : k_steps_before_any;
       implicit_step_ = is_in_vain ? 0.0 : h_;
@@ -155,7 +163,7 @@ private:
     }
     is_trial_ = is_trial;
     if (is_trial) explicit_step_ = mean_step_;
-    if (implicit_->steps() == 0) implicit_->propose_step(10.0 * explicit_step_); // first guess
+    if (implicit_->steps() == 0) implicit_->propose_step(10.0 * explicit_step_); // first guess, if no implicit step has been made yet
     active_ = implicit_.get();
     implicit_steps_before_ = implicit_->steps();
   }
@@ -165,13 +173,13 @@ private:
   Integrator* active_;
   bool is_started_ = false, is_warm_ = false;
   int count_ = 0;
-  double explicit_step_ = 0.0; ///< longest explicit step allowed by stability, or reached in a trial, s
+  double explicit_step_ = 0.0; ///< longest explicit step allowed by stability, s
   double suspicious_share_;
   double mean_share_ = 0.0, mean_step_ = 0.0; ///< averages over explicit steps; mean_step_ in s
-  long steps_explicit_ = 0,
-       steps_before_trial_ = k_steps_before_trial; ///< explicit steps since the method was resumed; number of them before the next trial
+  /// Number of explicit steps since the explicit method was resumed, and number from which the implicit method may be tried.
+  long steps_explicit_ = 0, steps_before_trial_ = k_steps_before_trial;
   long steps_before_any_ = k_steps_before_any;
-  double last_step_ = 0.0;     ///< s
+  double last_step_ = 0.0;     ///< length of the previous step, s
   double implicit_step_ = 0.0; ///< implicit step length that the explicit method has to compete with, s; 0: unknown
   bool is_trial_ = false;
   long implicit_steps_before_ = 0;

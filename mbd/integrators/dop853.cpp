@@ -12,16 +12,17 @@ namespace steplap {
 
 namespace {
 
-// Bounds for accepting the dense output. Beyond the stability limit, components that exist only as rounding errors grow within a step: at
-// its end by up to (hρ)¹²/12!, in the dense output by (hρ)¹⁵, which is 10⁴ times as much at hρ = 30 and 10⁵ times at 60, unseen by the
-// error estimate. The difference between the stage at 0.2 and the dense output is then 1/15 to 1/60 of the error of the latter; in accurate
-// steps it is a tenth of the tolerance (docs/how-to/choose_a_method.md).
+// Largest accepted difference between the dense output and the stage at 0.2, as error norm. In a step beyond the stability limit (hρ
+// large, ρ the fastest rate) components that exist only as rounding errors grow: at the end of the step by up to (hρ)¹²/12!, but in the
+// dense output by (hρ)¹⁵, which is 10⁴ times as much at hρ = 30 and 10⁵ times at 60. The error estimate does not see this. The
+// difference at 0.2 is then 1/15 to 1/60 of the error of the dense output; in accurate steps it is a tenth of the tolerance
+// (docs/how-to/choose_a_method.md).
 constexpr std::size_t k_checked_stage = 14;
 constexpr double k_most_departure = 5.0;
-// The slip velocities on which friction directions depend need an accuracy there that is 1/60 of a tenth: within a step they may decrease
-// to a tenth (Integrator::resolves_slips).
+// Stricter limit for steps with slip, because friction directions depend on slip velocities, which may decrease to a tenth within a step
+// (Integrator::resolves_slips): the error of the dense output, up to 60 times the difference, is then at most 10 in the error norm.
 constexpr double k_most_departure_of_slips = 10.0 / 60.0;
-constexpr double k_most_defect = 10.0; // about 1 in accurate steps: an eighth of the polynomial's error, times hρ
+constexpr double k_most_defect = 10.0; // largest accepted defect, as error norm; about 1 in accurate steps
 
 class Dop853 final : public ExplicitPair {
 public:
@@ -56,7 +57,7 @@ public:
     double* const y = scratch_.data();
     combine<dop853::a, 11, 11>(y0_.data(), h_, k_.data(), stride_, n_, y);
     for (int i = 0; i < n_; ++i) y[i] = y1_[i] - y[i];
-    return rate_of_stages(12, 11, y) / 6.1; // stable on the negative real axis for hρ up to 6.1
+    return rate_of_stages(12, 11, y) / 6.1; // dop853 is stable on the negative real axis for hρ up to 6.1
   }
 
 protected:
@@ -112,7 +113,7 @@ private:
     is_dense_ready_ = true;
   }
 
-  // Returns the error norm of the dense output compared with a stage that is accurate to order 6.
+  // Returns the error norm of the difference between the dense output and stage k_checked_stage, which is accurate to order 6.
   [[nodiscard]] double stage_departure() {
     double* const y = scratch_.data();
     double* const departure = y + n_;
@@ -122,7 +123,7 @@ private:
     return error_norm(departure);
   }
 
-  // Returns the norm of the defect of the dense output u in the middle of the step: h (u' − f(u)).
+  // Returns the error norm of the defect h (u' − f(u)) of the dense output u in the middle of the step.
   [[nodiscard]] double defect(Dynamics& dynamics) {
     double* const y = scratch_.data();
     double* const f = y + n_;
@@ -130,7 +131,7 @@ private:
     const double* const r = r_.data();
     constexpr double s = 0.5;
     for (int i = 0; i < n_; ++i) {
-      double value = r[6 * stride_ + i], slope = 0.0; // of the polynomial, evaluated from its innermost bracket
+      double value = r[6 * stride_ + i], slope = 0.0; // value and derivative of the dense polynomial by Horner's scheme
       for (int p = 5; p >= 0; --p) {
         slope = (p % 2 == 1 ? value : -value) + s * slope;
         value = r[p * stride_ + i] + s * value;

@@ -11,23 +11,24 @@ namespace steplap {
 
 namespace {
 
-// Safety factor of the curvature M. A kink between two nodes appears in each of the adjacent second differences with half of the required
-// value; the rest is a margin of 2.
+// Safety factor of the curvature bound M. A kink between two nodes enters each of the two adjacent second differences with half of the
+// curvature that covers it (factor 2); the rest is a margin of 2.
 constexpr double k_curvature_safety = 4.0;
-// Second differences miss the curvature where w″ changes sign. For a harmonic that turns by 1.6 rad about such a point w″ is up to 1.28
-// times the range of w.
+// For few nodes: |w″| in terms of the range of w, because second differences miss the curvature where w″ changes sign. A harmonic that
+// turns by 1.6 rad about such a point has |w″| up to 1.28 times the range of w.
 constexpr double k_bend_of_range = 2.0;
-// The same for the utilisation of a joint with variable clamping pressure. 1 − 1/q with q = 1 + b (1 − cos 1.6 θ) has a curvature of 2.56
-// (1 + b) times its range where the pressure is least, and little elsewhere. b is 9 if the pressure falls to a tenth of its mean.
+// |w″| in terms of the range of w for the utilisation of a joint with variable clamping pressure, 1 − 1/q with q = 1 + b (1 − cos 1.6 θ). Its
+// curvature is 2.56 (1 + b) times its range where the pressure is least, and small elsewhere. b = 9 if the pressure falls to a tenth of
+// its mean.
 constexpr double k_bend_of_share = 25.6;
-constexpr double k_steeper = 1.5;       // 1/cos of 0.84 rad
-constexpr int k_few = 3;                // with at most this many gaps the range determines M
-constexpr double k_unseen_by_one = 2.0; // factor for one inner node, of the range of the values at three nodes
+constexpr double k_steeper = 1.5;       // largest increase of a slope towards a kink (EventNodes::Curve::bound): 1/cos of 0.84 rad
+constexpr int k_few = 3;                // with at most this many gaps between nodes the range of w determines M
+constexpr double k_unseen_by_one = 2.0; // with a single inner node: possible minimum below the lowest node, in ranges of the three values
 
 // Returns true if chord − ½ M s (g − s) > 0 for 0 < s < g, with end values a and b.
 bool is_positive_between(double a, double b, double g, double m) {
   const double slope = (b - a) / g;
-  const double s = 0.5 * g - slope / m; // place of the minimum
+  const double s = 0.5 * g - slope / m; // position of the minimum
   if (!(s > 0.0)) return b > 0.0;
   if (!(s < g)) return a > 0.0;
   return a + slope * s - 0.5 * m * s * (g - s) > 0.0;
@@ -47,7 +48,7 @@ void EventNodes::add(double theta, const double* event_value, bool has_merged) {
   for (; place > 0 && theta_[order_[place - 1]] > theta; --place) order_[place] = order_[place - 1];
   if (place > 0 && theta_[order_[place - 1]] == theta) {
     for (int i = place; i < count_; ++i) order_[i] = order_[i + 1];
-    // Two stages at the same node, the midpoints of rk4, deviate by h² a/8 in opposite directions, so their mean is used.
+    // rk4 has two stages at the midpoint, which deviate by h² a/8 in opposite directions; their mean is used.
     double* const known = values_.data() + static_cast<std::ptrdiff_t>(order_[place - 1]) * stride_;
     for (int k = 0; k < slots_; ++k) known[k] = 0.5 * (known[k] + event_value[k]);
     has_merged_[order_[place - 1]] = has_merged_[order_[place - 1]] && has_merged;
@@ -70,7 +71,8 @@ void EventNodes::close(const double* event_value0, const double* event_value1) {
         read_numbers(event_value1 + i, last);
         S least = first < last ? first : last, most = first < last ? last : first;
         const double* at = values + i;
-        for (int k = 0; k < count; ++k, at += stride) { // NaN: the previous value is kept
+        // NaN: the event function was not evaluated at this stage; the previous value is kept
+        for (int k = 0; k < count; ++k, at += stride) {
           read_numbers(at, value);
           least = value < least ? value : least;
           most = value > most ? value : most;
@@ -79,7 +81,7 @@ void EventNodes::close(const double* event_value0, const double* event_value1) {
         std::memcpy(high + i, &most, sizeof most);
       });
   if (count_ > 1) return;
-  // A single inner node (rk4) cannot detect cancelling components of a sum of harmonics; the function may be lower than at the nodes.
+  // With one inner node (rk4) components of a sum of harmonics may cancel at all three nodes, so the function may be lower between them.
   for (int i = 0; i < slots_; ++i) low_[i] -= k_unseen_by_one * (high_[i] - low_[i]);
 }
 
@@ -104,7 +106,7 @@ EventNodes::Curve EventNodes::curve_of(const EventStep& watched) const {
         2.0 * ((c.w[j + 1] - c.w[j]) / (c.x[j + 1] - c.x[j]) - (c.w[j] - c.w[j - 1]) / (c.x[j] - c.x[j - 1])) / (c.x[j + 1] - c.x[j - 1]);
   c.bend[0] = c.bend[1];
   c.bend[n] = c.bend[n - 1];
-  // Slopes at the ends, where known, are more reliable than stages.
+  // Slopes at the ends of the step, if known, are exact; second differences there are not.
   const auto [least, most] = std::minmax_element(c.w.begin(), c.w.begin() + n + 1);
   c.most_bend = (watched.is_of_joint ? k_bend_of_share : k_bend_of_range) * (*most - *least);
   const double first = c.x[1], rest = 1.0 - c.x[n - 1];
@@ -113,10 +115,10 @@ EventNodes::Curve EventNodes::curve_of(const EventStep& watched) const {
   return c;
 }
 
-// Returns M. A kink in a gap, as in the distance to something that is passed, lowers the function below its chord by (jump of the slope) u
-// (g − u)/g, wherever in the gap it is; this corresponds to M = 2 (jump)/g. Second differences underestimate it if neighbouring gaps are
-// wide. The jump is the difference between the slopes of the adjacent chords, or larger: the flanks of a point that passes on a circle get
-// steeper towards the kink, by at most k_steeper in a step that turns by a radian. (If a slope is unknown, comparisons with NaN are false.)
+// Returns M. A kink with slope jump s at distance u from one node lowers w below its chord by s u (g − u)/g; this corresponds to M = 2
+// s/g. (Example: the distance to an object that is passed.) Second differences underestimate s if the neighbouring gaps are wide, so s
+// is also taken from the slopes of the adjacent chords. The flanks of a point that passes on a circle get steeper towards the kink, by
+// at most k_steeper in a step that turns by one radian. If a slope is unknown, comparisons with NaN are false.
 double EventNodes::Curve::bound(int gap) const {
   const auto chord = [this](int i) { return (w[i + 1] - w[i]) / (x[i + 1] - x[i]); };
   const double before = gap > 0 ? chord(gap - 1) : start_slope, after = gap + 1 < last ? chord(gap + 1) : end_slope;
@@ -128,7 +130,8 @@ double EventNodes::Curve::bound(int gap) const {
 bool EventNodes::Curve::is_positive_in(int gap) const {
   const double m = bound(gap), g = x[gap + 1] - x[gap];
   if (is_positive_between(w[gap], w[gap + 1], g, m)) return true;
-  // Leaves zero at the start, or approaches it at the end, with a known slope (comparisons with NaN are false).
+  // Returns true if w leaves zero at the start of the step, or approaches zero at its end, with a slope that exceeds the possible
+  // curvature (comparisons with NaN are false).
   return (gap == 0 && start_slope > 0.5 * m * g) || (gap == last - 1 && -end_slope > 0.5 * m * g);
 }
 

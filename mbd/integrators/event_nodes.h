@@ -27,11 +27,12 @@ struct EventEnd {
 /// An event function in a step.
 struct EventStep {
   int slot = 0;
-  bool is_merged = false;   ///< belongs to a merged joint: not all nodes have its value
-  bool is_of_joint = false; ///< belongs to a joint whose capacity is a fraction of its clamping
+  /// The slot belongs to a joint whose bodies are merged into one cluster; such joints are not evaluated at every stage.
+  bool is_merged = false;
+  bool is_of_joint = false; ///< the slot belongs to a step-lap joint, whose capacity is proportional to its clamping force
   EventEnd start, end;
 };
-/// Event functions at the nodes of one step.
+/// Values of all event functions at the stages of one step.
 
 class EventNodes {
 public:
@@ -40,8 +41,8 @@ public:
         low_(stride_), high_(stride_) {}
 
   void clear() { count_ = 0; }
-  /// Adds the values at `theta` (0 start, 1 end of the step). Values at the ends and beyond the capacity are ignored. `has_merged`: values
-  /// of merged joints were computed at this node and are not older ones.
+  /// Adds the values at `theta` (0 start, 1 end of the step). Values at the ends and beyond the capacity are ignored. `has_merged`:
+  /// joints inside clusters were evaluated at this node; otherwise their values are from an earlier node.
   void add(double theta, const double* event_value, bool has_merged);
 
   /// Computes the range of each event function. To be called once after the last add(), before the functions below.
@@ -59,9 +60,9 @@ private:
   /// An event function at the nodes where it is known, including the ends.
   struct Curve {
     int last = 0;                                    ///< index of the last node
-    std::array<double, k_most + 2> x{}, w{}, bend{}; ///< bend[j]: w″ by the second difference about node j
+    std::array<double, k_most + 2> x{}, w{}, bend{}; ///< bend[j]: w″ from the second difference about node j
     double start_slope = 0.0, end_slope = 0.0;
-    double most_bend = 0.0;                    ///< lower limit of M for few nodes, by the range of w
+    double most_bend = 0.0;                    ///< lower limit of M if there are few nodes, from the range of w
     [[nodiscard]] double bound(int gap) const; ///< returns M between nodes `gap` and `gap` + 1
     [[nodiscard]] bool is_positive_in(int gap) const;
     [[nodiscard]] bool falls_once_in(int gap) const;

@@ -10,8 +10,8 @@ namespace steplap {
 namespace {
 
 constexpr double k_shortest_retry = 0.1;
-constexpr double k_shorter = 0.2; // factor for the length after a step with an infinite error
-// Near a singular position rounding prevents agreement of stages only for tolerances below this.
+constexpr double k_shorter = 0.2; // factor on the step length after an attempt with an infinite error
+// Only below this tolerance does rounding prevent the stages near a singular position from converging.
 constexpr double k_near_rounding = 1e-10;
 // Fraction of the distance to the singular position at which the next attempt begins after a failure.
 constexpr double k_closer = 0.5;
@@ -24,7 +24,7 @@ ExplicitPair::ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& s
   control_.order = order;
 }
 
-// The step length is kept across an event: it was limited by the motion, which usually changes little.
+// The step length is kept across an event: the motion limited it, and usually changes little.
 void ExplicitPair::on_restart(Dynamics&) {
   control_.previous_error = 1e-4;
   approach_.restart();
@@ -62,7 +62,7 @@ bool ExplicitPair::withdraw(Dynamics& dynamics, double h) {
   control_.previous_error = saved_control_.error;
   next_h_ = h;
   refuse_shorter_than_rounding(next_h_);
-  dynamics.rates(t0_, y0_.data(), scratch_.data()); // the next try starts there
+  dynamics.rates(t0_, y0_.data(), scratch_.data()); // leaves `dynamics` evaluated at the start of the next attempt
   return true;
 }
 
@@ -71,8 +71,8 @@ void ExplicitPair::dense(Dynamics& dynamics, double theta, double* out) {
   else dense_of_pair(dynamics, theta, out);
 }
 
-// After a try that came near a singular position: crosses it by one step of collocation with the position in its middle. Returns 0 if this
-// succeeded, otherwise the length of the next try.
+// After an attempt that came near a singular position: crosses that position by one collocation step with the position in its middle.
+// Returns 0 if this succeeded, otherwise the length of the next attempt, s.
 double ExplicitPair::cross_singularity(Dynamics& dynamics, double left) {
   if (!crossing_) crossing_ = std::make_unique<SingularCrossing>(stride_);
   const double h_tried = h_;
@@ -93,11 +93,11 @@ double ExplicitPair::cross_singularity(Dynamics& dynamics, double left) {
   return 0.0;
 }
 
-// Begins a try of about the length h, adjusted to the limit. Returns true if it ends at the limit.
+// Begins an attempt of about the length h, adjusted to the limit. Returns true if the attempt ends at the limit.
 bool ExplicitPair::begin_try(double h, double t_limit) {
   const double left = t_limit - t0_;
   const bool is_last = h >= left * (1.0 - 1e-10);
-  // Two equal steps instead of a long one followed by a tiny one.
+  // Two equal steps are made instead of a long one followed by a tiny one.
   h_ = is_last ? left : (2.0 * h > left ? 0.5 * left : h);
   t1_ = is_last ? t_limit : t0_ + h_;
   begin_event_nodes();
@@ -105,8 +105,8 @@ bool ExplicitPair::begin_try(double h, double t_limit) {
   return is_last;
 }
 
-// Completes a step whose end is accurate, and chooses the length of the next one, if its dense output is accurate enough. `inside` receives
-// the error norm of the dense output if that is computed.
+// Completes a step whose end is accurate, and chooses the length of the next one, provided that the dense output is accurate enough.
+// `inside` receives the error norm of the dense output if that norm is computed.
 bool ExplicitPair::accept_inside(Dynamics& dynamics, double h, double error, bool is_retry, double& inside) {
   const double pivot = dynamics.smallest_pivot();
   is_beside_singular_ = approach_.is_beside(dynamics.least_pivot());

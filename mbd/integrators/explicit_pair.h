@@ -6,13 +6,13 @@
 
 namespace steplap {
 
-/// A singular position of joints is ahead that cannot be passed in joint coordinates, but perhaps in absolute ones. Thrown only if both are
-/// possible; the state is then that of the last step.
+/// Thrown if a singular position of joints lies ahead that cannot be passed in joint coordinates, but may be passable in absolute ones.
+/// The state is that of the last accepted step.
 struct JointsNearSingular : NumericalFailure {
   using NumericalFailure::NumericalFailure;
 };
 
-/// Base class of the pairs: derived classes supply the stages, the error estimate and the dense output.
+/// Base class of the embedded explicit pairs. Derived classes supply stages, error estimate and dense output.
 class ExplicitPair : public Integrator {
 public:
   ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension, int stages, int order);
@@ -29,8 +29,8 @@ protected:
   [[nodiscard]] virtual double share_of_stability(Dynamics& dynamics) = 0;
   /// Computes the stages, y1 and the error norm (acceptable if ≤ 1) of a step of length h_ from t0_.
   virtual double try_step(Dynamics& dynamics) = 0;
-  /// Returns the error norm of the dense output of an accepted step, for pairs whose dense output can be worse than the end; 0 otherwise.
-  /// The step is rejected if it is above 1 or NaN.
+  /// Returns the error norm of the dense output of an accepted step, for pairs whose dense output can be less accurate than the end of
+  /// the step; 0 for all others. The step is rejected if the norm is above 1 or NaN.
   [[nodiscard]] virtual double dense_error(Dynamics& /*dynamics*/) { return 0.0; }
   void on_restart(Dynamics& dynamics) override;
   [[nodiscard]] bool withdraw(Dynamics& dynamics, double h) final;
@@ -39,15 +39,15 @@ protected:
     add_stages<Rows, Row, Row>(scratch_.data());
     evaluate_stage(dynamics, t0_ + c * h_, scratch_.data(), k(Row), c);
   }
-  /// Evaluate combine() and weighted_sum() of explicit_runge_kutta.h for the stages.
+  /// Call combine() and weighted_sum() of explicit_runge_kutta.h with the stages of this pair.
   template <const auto& Rows, std::size_t Row, std::size_t Count> void add_stages(double* out) {
     combine<Rows, Row, Count>(y0_.data(), h_, k_.data(), stride_, n_, out);
   }
   template <const auto& Weights, std::size_t Count> void sum_stages(double* out) {
     weighted_sum<Weights, Count>(k_.data(), stride_, n_, out);
   }
-  /// Returns h ‖k_i − k_j‖/‖y_i − y_j‖ of two stages at the end of the step, an estimate of the fastest rate (Hairer, Wanner, Solving ODEs
-  /// II, IV.2). `difference` is y_i − y_j.
+  /// Returns h ‖k_i − k_j‖/‖y_i − y_j‖ for two stages at the end of the step, an estimate of h times the fastest rate (Hairer, Wanner,
+  /// Solving ODEs II, IV.2). `difference` is y_i − y_j.
   [[nodiscard]] double rate_of_stages(std::size_t i, std::size_t j, const double* difference) {
     double rates = 0.0, states = 0.0;
     for (int l = 0; l < n_ - 2; ++l) {
@@ -55,7 +55,7 @@ protected:
       rates += f * f;
       states += y * y;
     }
-    // Differences far below the tolerance (bodies at rest) are rounding errors.
+    // Differences far below the tolerance (bodies at rest) consist of rounding errors only.
     return states > 1e-6 ? h_ * std::sqrt(rates / states) : 0.0;
   }
   double* k(std::size_t i) { return k_.data() + i * stride_; }
@@ -70,7 +70,7 @@ private:
   void note_end(double pivot);
   [[nodiscard]] double error_inside(Dynamics& dynamics);
   [[nodiscard]] double shorter(double error) const;
-  /// Counts a rejection. Returns the length of the next try, as a share of that of the last.
+  /// Counts a rejected attempt. Returns the ratio of the next step length to the rejected one.
   [[nodiscard]] double rejected(double share) {
     ++rejections_;
     return share * h_;
@@ -81,10 +81,10 @@ private:
   double next_h_ = 0.0;
   std::unique_ptr<SingularCrossing> crossing_; ///< created when the first crossing occurs
   SingularApproach approach_;
-  bool is_crossing_ = false;        ///< the step made is a crossing
-  bool is_inside_known_ = false;    ///< the dense output of the step made has been checked
-  bool is_beside_singular_ = false; ///< the step made is near a singular position
-  /// Control data before the step made, restored if it is withdrawn.
+  bool is_crossing_ = false;        ///< the last step is a singular crossing
+  bool is_inside_known_ = false;    ///< the dense output of the last step has been checked
+  bool is_beside_singular_ = false; ///< the last step is near a singular position
+  /// Step-control data before the last step, restored by withdraw().
   struct SavedControl {
     SingularApproach approach;
     double error = 1e-4;

@@ -18,10 +18,10 @@ namespace steplap {
 using TwoNumbers [[gnu::vector_size(16)]] = double;
 using FourNumbers [[gnu::vector_size(32)]] = double;
 
-/// Reads as many numbers as S holds. (By reference, because the registers for return values depend on the processor.)
+/// Reads as many numbers as S holds. (Output by reference, because the register that would return S depends on the processor.)
 template <class S> STEPLAP_INLINE void read_numbers(const double* from, S& numbers) { std::memcpy(&numbers, from, sizeof numbers); }
 
-/// Calls f.operator()<S>(i) for i … n − 1 in blocks of the size of S.
+/// Calls f.operator()<S>(i) for all numbers i … n − 1, in blocks of two and a single last one.
 template <class F> STEPLAP_INLINE void for_numbers_by_two(int i, int n, const F& f) {
   for (; i + 1 < n; i += 2) f.template operator()<TwoNumbers>(i);
   if (i < n) f.template operator()<double>(i);
@@ -57,7 +57,7 @@ STEPLAP_INLINE void sum_stages_into(S& sum, const double* k, int stride, std::in
   ((Coefficient(J) != 0.0 ? add_stage(Coefficient(J), k + static_cast<std::ptrdiff_t>(J) * stride, sum) : void()), ...);
 }
 
-/// out[i …] = Σ_j coefficient_j k_j[i …] for a block of the size of S, modified by f(i, sum) before it is stored.
+/// Stores sums Σ_j coefficient_j k_j[i …] of a block of the size of S to out[i …], after modification by f(i, sum).
 template <class S, auto Coefficient, std::size_t Count, class F>
 STEPLAP_INLINE void put_sums(const double* k, int stride, int i, double* out, const F& f) {
   S sum;
@@ -90,7 +90,7 @@ template <auto Coefficient, std::size_t Count, class F> inline void for_sums(con
   put_sums_by_two<Coefficient, Count>(k, stride, 0, n, out, f);
 }
 
-/// Leaves the sum unchanged.
+/// Functor that leaves the sum unchanged.
 struct AsItIs {
   template <class S> STEPLAP_INLINE void operator()(int, S&) const {}
 };

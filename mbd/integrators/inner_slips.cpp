@@ -1,10 +1,11 @@
 // Detection of slips that begin and end within one part of a time step, so that all elements stick at its end.
 //
-// A part uses means of loads and the clamping pressures at its end. The error of the utilisations (shares of the capacity) near a peak is
-// of the size of their changes from part to part. Only if a utilisation may reach one within this error is the part examined: it is
-// repeated up to three places, with loads averaged over 1/1000 of its length before each. Loads have no breakpoints within a step
-// (Simulation::next_limit_of_steps), and no harmonic turns far, so the utilisation is nearly a parabola through three values. If this
-// reaches one within the part and is below one at the end, a slip is hidden; if it is not below at the end, the next part will find it.
+// A part is computed with mean loads and with the clamping pressures at its end, so a peak of the utilisation (load over capacity)
+// within it is not seen. Near a peak this error is about the change of the utilisation from part to part. A part is examined only if a
+// utilisation may have reached 1 within this error. The examination repeats the part up to three positions, with loads averaged over the
+// last 1/1000 of its length. Loads have no breakpoints within a step (Simulation::next_limit_of_steps), and harmonics turn little, so
+// the utilisation is nearly a parabola through three values. If the parabola reaches 1 within the part and is below 1 at its end, a slip
+// is hidden. If it is not below 1 at the end, the next part finds the slip.
 #include "mbd/integrators/time_stepping.h"
 
 #include <algorithm>
@@ -14,12 +15,15 @@ namespace steplap {
 
 namespace {
 
-// Allowance in changes of utilisation from part to part: for a triangular peak as wide as a part the mean is too small by one change.
+// Possible excess of the utilisation within a part, in changes from part to part: with a triangular peak as wide as the part, the mean
+// is too small by one change.
 constexpr double k_reach = 1.5;
 constexpr double k_noise = 1e-6;  // accuracy of utilisations; wrenches converge to this (time_stepping.cpp)
-constexpr double k_glance = 1e-3; // duration of averaging, relative to a part
+constexpr double k_glance = 1e-3; // averaging time of loads before a probed position, relative to the part
 constexpr double k_unlike_parabola =
-    0.3; // relative to the curvature within a part. Harmonics advance by at most 0.4 rad per part; the reciprocal of one may curve more
+    // Allowance for the deviation from a parabola, relative to the curvature within a part: harmonics turn by at most 0.4 rad per
+    // part, and the reciprocal of one may curve more.
+    0.3;
 constexpr double k_places[] = {0.125, 0.5625, 1.0}; // positions within a part; the last is its end
 
 // Returns an upper limit of the utilisation between 0 and 1: the maximum of the parabola through three values at k_places, plus a fraction
@@ -33,7 +37,7 @@ double top_of(const std::array<double, 3>& u) {
   return top + k_unlike_parabola * 0.25 * std::abs(second);
 }
 
-// Returns a state whose memory is reused from part to part.
+// Returns a scratch state; its memory is reused from part to part.
 State& probe_state() {
   thread_local State state;
   return state;
@@ -51,9 +55,9 @@ double TimeStepping::usage_of(const Evaluation& e, const FrictionPart& part) con
   return system_.frictions[part.friction].friction->gauge(e, e.friction[part.friction], wrench, normal);
 }
 
-// Stores the sticking elements at the end t1 of the part made. Returns true if some of them may have slipped within it.
+// Records the elements that stick at the end t1 of the part just computed. Returns true if some of them may have slipped within it.
 bool TimeStepping::note_sticking(Dynamics& dynamics, double t1) {
-  if (sticking_.size() < system_.frictions.size()) { // allocates the memory for later steps
+  if (sticking_.size() < system_.frictions.size()) { // allocated once, at the first call
     sticking_.resize(system_.frictions.size());
     glance_usage_.resize(system_.frictions.size());
     probe_state() = start_;
@@ -66,7 +70,7 @@ bool TimeStepping::note_sticking(Dynamics& dynamics, double t1) {
     Sticking& now = sticking_now_[part.friction];
     now.t = t1;
     now.usage = usage_of(dynamics.evaluation(), part);
-    if (start_.friction[part.friction].phase == FrictionPhase::slip) continue; // it has just come to rest
+    if (start_.friction[part.friction].phase == FrictionPhase::slip) continue; // the element came to rest in this part: its slip is known
     const bool is_known = before.t == start_.t;
     now.change = is_known ? std::abs(now.usage - before.usage) : 1.0;
     const double reach = k_reach * std::max(now.change, before.change);
@@ -76,8 +80,8 @@ bool TimeStepping::note_sticking(Dynamics& dynamics, double t1) {
   return is_any_near;
 }
 
-// Returns true if an element marked as near slips within the part from start_ to t1 and sticks at its end. The state of `dynamics` is
-// undefined afterwards.
+// Returns true if an element with Sticking::is_near slips within the part from start_ to t1 and sticks at its end. The state of
+// `dynamics` is undefined afterwards.
 bool TimeStepping::slips_inside(Dynamics& dynamics, double t1, double tolerance) {
   const double h = t1 - start_.t;
   const Residual residual = residual_;
@@ -85,14 +89,14 @@ bool TimeStepping::slips_inside(Dynamics& dynamics, double t1, double tolerance)
   bool is_made = true;
   State& probe = probe_state();
   const auto holds_at_end = [&](std::size_t f) { return sticking_now_[f].is_near && glance_usage_[f].back() < 1.0; };
-  for (const int i : {k_glances - 1, 0, 1}) { // the end first, as nothing is hidden if nothing holds there
+  for (const int i : {k_glances - 1, 0, 1}) { // the end first: if no element sticks there, no slip is hidden
     probe = start_;
     const double end = i + 1 == k_glances ? t1 : start_.t + k_places[i] * h;
     glance_ = k_glance * h;
     try {
       is_made = try_part(dynamics, probe, end, tolerance).what == nullptr;
     } catch (const NumericalFailure&) {
-      is_made = false; // the part as a whole was possible
+      is_made = false; // cannot be computed up to this position, although the whole part could: not examined
     }
     glance_ = 0.0;
     if (!is_made) break;
@@ -104,7 +108,7 @@ bool TimeStepping::slips_inside(Dynamics& dynamics, double t1, double tolerance)
       slips_any = slips_any || (holds_at_end(part.friction) && usage[i] >= 1.0);
     }
     is_made = holds_any;
-    if (!is_made || slips_any) break; // further places cannot change the answer, unless a part up to them is impossible
+    if (!is_made || slips_any) break; // one slip suffices; without sticking elements there is nothing to find
   }
   residual_ = residual;
   for (std::size_t f = 0; is_made && f < sticking_now_.size(); ++f)

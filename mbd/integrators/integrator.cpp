@@ -12,33 +12,36 @@ namespace steplap {
 
 namespace {
 
-// Absolute part of the error scales. Positions: a thousandth of the radius of gyration. Velocities: that length times this multiple of the
-// scene's characteristic rate, 60/s (10 Hz) for bodies of 1 m. Above these, errors are relative to displacement and velocity.
+// Scales below which errors are absolute. Positions: a thousandth of the radius of gyration. Velocities: that length times k_rate_floor
+// times the characteristic rate of the scene (scene_rate.h); for bodies of 1 m the product of the two is 60/s (10 Hz). Above these
+// scales errors are relative to displacement and velocity.
 constexpr double k_displacement_floor = 1e-3;
 constexpr double k_rate_floor = 60.0 / k_metre_rate;
-// Weight of that part of an error which projection removes. It is not zero, because the directions of the constraints change within a step.
+// Weight of the error component that projection onto the constraints removes. It is not zero, because the directions of the constraints
+// change within a step.
 constexpr double k_turned_share = 1e-4;
-// Event functions of merged joints far from their limits are computed about twice inside a step, at this distance, but not just before its
-// end, where they are computed in any case.
+// Joints inside clusters that are far from their limits are evaluated about twice within a step, at intervals of 0.25 of its length, but
+// not in its last 1/16, since they are evaluated at its end in any case.
 constexpr double k_rigid_joint_interval = 0.25, k_merged_end = 0.0625;
-// Relative to time: a step that cannot satisfy the constraints is not shortened below this.
+// Shortest attempt, relative to time, after the constraints could not be satisfied at the end of a step.
 constexpr double k_shortest_try = 1e-12;
-// Accuracy of positions and velocities that rounding leaves: relative, and in m, rad, m/s, rad/s.
+// Accuracy of positions and velocities that rounding permits: relative, and absolute in m, rad, m/s, rad/s.
 constexpr double k_finest_accuracy = 1e-12;
 // Errors of slip velocities stay below this fraction of the slip speed, whatever the tolerance. At the start and end of a slip, |ν| → 0, an
 // error of the size of the tolerance would give the friction an arbitrary direction.
 constexpr double k_slip_share = 5e-4;
-// The error norm is a mean over the numbers of the state. If there are more numbers than those of eight bodies, slip velocities get a
-// correspondingly larger weight.
+// The error norm is a mean over the numbers of the state, so that many bodies dilute a single slip. Above this count, about that of
+// eight bodies, slip velocities get a correspondingly larger weight.
 constexpr double k_slip_numbers = 50.0;
-// Least speed of a slip within a step, relative to its start. Speeds are compared instead of scales of coordinates, because these also
-// change with levers: an angle about the contact point itself has an infinite scale. Errors that are k_slip_share of the initial speed are
-// then at most 1/200 of the speed anywhere in the step, and so is the rotation of the slip direction that they cause.
+// Least speed of a slip within a step, relative to the start of the step. Errors of k_slip_share of the initial speed then stay below
+// 1/200 of the speed anywhere in the step, and so does the rotation of the slip direction that they cause. Speeds are compared instead
+// of the scales of coordinates, because these also change with levers: the scale of an angle about the contact point itself is infinite.
 constexpr double k_least_slip = 0.1;
-// Fraction of the distance to the place where the slip was too slow, for the next try. For a uniformly decelerated slip the speed there is
-// a fifth.
+// Length of the next attempt, relative to the position in the step where the slip was too slow. With this factor a uniformly decelerated
+// slip keeps a fifth of its speed.
 constexpr double k_shorter_slip = 0.8;
-// Halving steps reduces the error of a method of order 5, the lowest used here, by 32.
+// Permitted error of slip velocities in a finer run: halving the steps divides the error of a method of order 5, the lowest used here,
+// by 32.
 double slip_share(int division) { return k_slip_share / (static_cast<double>(division) * division * division * division * division); }
 
 } // namespace
@@ -162,7 +165,7 @@ void Integrator::finish_step(Dynamics& dynamics) {
   residual_.velocity = std::max(residual_.velocity, found.velocity);
   if (is_adaptive() || !are_dense_evaluations_expected_) {
     dynamics.evaluate(Request::end, t1_, y1_.data(), k1_);
-  } else { // for fixed steps only the values at their ends are used
+  } else { // fixed steps: event functions are used only at the ends of the step
     dynamics.rates(t1_, y1_.data(), k1_);
     dynamics.evaluate_rigid_joint_events(k1_);
   }
@@ -173,7 +176,7 @@ void Integrator::finish_step(Dynamics& dynamics) {
 }
 
 bool Integrator::try_finish_step(Dynamics& dynamics) {
-  // If no step is short enough, the failure itself is more informative than a message about the step length.
+  // In the shortest attempt the failure itself is rethrown, because it is more informative than a message about the step length.
   const bool is_shortest = h_ < k_shortest_try * rounding_time_scale(t0_, system_);
   try {
     finish_step(dynamics);
@@ -213,10 +216,11 @@ void Integrator::update_weights(Dynamics& dynamics) {
     const CoordinateScale& scale = layout.scales[i];
     const bool is_locked = layout.inverse_mass[i] == 0.0;
     double size = scale.is_place ? k_displacement_floor * length_scale_ : k_displacement_floor;
-    // A point moved by an angle of a mechanism must be as accurate as a position.
+    // Coordinates of mechanisms: the error of an angle is weighted by the displacement that it causes, so that a moved point is as
+    // accurate as a position.
     if (scale.reach > length_scale_) size *= length_scale_ / scale.reach;
     double displacement = std::abs(y0_[i] - layout.reference[i]);
-    if (scale.reach > 0.0) displacement = std::min(displacement, 1.0); // an angle moves points by its reach at most
+    if (scale.reach > 0.0) displacement = std::min(displacement, 1.0); // displacement of a point by an angle is at most its reach
     weight_[i] = is_locked ? 0.0 : 1.0 / (tolerance * (size + displacement));
     weight_[m + i] = is_locked ? 0.0 : 1.0 / (tolerance * (rate_floor_ * size + std::abs(y0_[m + i])));
   };
@@ -226,12 +230,12 @@ void Integrator::update_weights(Dynamics& dynamics) {
     for (int i = 0; i < m; ++i)
       if (weight_[m + i] > 0.0) weight_[m + i] = std::max(weight_[m + i], 1.0 / (share * slip_scale0_[i]));
   }
-  // Inner states are displacements (of an elastic joint: m, m, rad) with the same accuracy as those of bodies.
+  // Inner states are displacements (of an elastic joint: m, m, rad) and get the accuracy of body positions.
   for (int i = 2 * m; i < n_ - 2; ++i)
     weight_[i] =
         1.0 / (tolerance * (k_displacement_floor * std::min(length_scale_, 1.0) + std::abs(y0_[i] - system_.initial_inner[i - 2 * m])));
-  // Dissipated energy and work: relative to the present energy, the energy converted so far, or that of the absolute scales, whichever is
-  // largest.
+  // Dissipated energy and work: errors are relative to the largest of the present energy, the energy converted so far, and the energy of
+  // the absolute scales.
   const double floor_rate = rate_floor_ * k_displacement_floor * length_scale_;
   double energy = std::abs(y0_[n_ - 2]) + std::abs(y0_[n_ - 1]);
   const double* v = dynamics.cluster_rates(y0_.data());
@@ -258,8 +262,8 @@ double Integrator::projected_error_norm(Dynamics& dynamics, double* error) const
   return std::max(error_norm(error), k_turned_share * all);
 }
 
-// Compares the present forces with those of the new modes at the position after h with unchanged velocity, since a contact that has closed
-// presses more the deeper it gets. Within a step forces may change a velocity by at most its own size.
+// Compares the present forces with those of the new modes at the position after h with unchanged velocity, because a contact that has
+// just closed presses harder the deeper it gets. Forces may change a velocity within the step by at most its own magnitude.
 double Integrator::restrained_step(Dynamics& dynamics, double h) {
   constexpr int k_most_tries = 12;
   constexpr double k_most_shortened = 0.03;
@@ -277,7 +281,7 @@ double Integrator::restrained_step(Dynamics& dynamics, double h) {
   return h / settings_.division;
 }
 
-// Hairer, Nørsett, Wanner, Solving ODEs I, II.4: from the norms of y, f and a difference of f.
+// Returns the length of the first step, s, from the norms of y, f and a difference of f (Hairer, Nørsett, Wanner, Solving ODEs I, II.4).
 double Integrator::first_step(Dynamics& dynamics, int order, double h_max) {
   update_weights(dynamics);
   double* y = scratch_.data();

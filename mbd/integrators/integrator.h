@@ -24,9 +24,8 @@ struct IntegratorSettings {
   double step = 0.0;       ///< length of fixed steps, s; first step of adaptive methods
   double max_step = 0.0;   ///< largest step, s; 0: no limit
   double projection_tolerance = 1e-12;
-  /// Number of parts into which each step is divided in a finer run. All limits of a step (breakpoints, harmonics, forces after an event,
-  /// the end of a slip) then apply to `division` steps together. Fixed steps are cut as those of length division × step would be, and then
-  /// divided.
+  /// Number of parts into which each step is divided in a finer run. All limits of the step length (breakpoints, harmonics, forces after
+  /// an event, end of a slip) apply to the undivided step. Fixed steps are planned with length division × step and then divided.
   int division = 1;
 };
 
@@ -41,25 +40,26 @@ public:
   [[nodiscard]] virtual bool is_adaptive() const = 0;
   /// Starts at (t, y) in the present layout of `dynamics` and evaluates the rates there.
   void restart(Dynamics& dynamics, double t, const double* y);
-  /// As restart(), if the last evaluation of `dynamics` was at (t, y), with event functions of merged joints, and gave the rates `dy`.
+  /// As restart(), but without evaluation. Precondition: the last evaluation of `dynamics` was at (t, y), included event functions of
+  /// joints inside clusters, and gave the rates `dy`.
   void restart_evaluated(Dynamics& dynamics, double t, const double* y, const double* dy);
-  /// Tells whether every step will be evaluated inside (samples, extremes). If so, which is the default, step() makes only steps whose
-  /// dense output is as accurate as their ends. If not, dense_output_is_accurate() checks this on demand.
+  /// Sets whether every step will be evaluated inside (samples, extremes; the default). If so, step() accepts only steps whose dense
+  /// output is as accurate as their ends. If not, dense_output_is_accurate() checks this on demand.
   virtual void expect_dense_evaluations(bool are_expected) { are_dense_evaluations_expected_ = are_expected; }
   /// To be called before the dense output of a step is used for the first time. Returns false if it is less accurate than the ends of the
   /// step; the step is then withdrawn, and step() must be called again to make a shorter one.
   [[nodiscard]] virtual bool dense_output_is_accurate(Dynamics& /*dynamics*/) { return true; }
-  /// To be called if the step is used only up to theta, with y the state there. Returns false if some slip velocity has fallen there to the
-  /// accuracy of velocities in this step, so that its end or its direction would be arbitrary. The step is then withdrawn, and step() makes
-  /// a shorter one.
+  /// To be called if only the part of the step up to theta is used, with y the state there. Returns false if a slip velocity has
+  /// decreased there to the error of velocities in this step, so that its end or direction would be arbitrary. The step is then
+  /// withdrawn, and the next step() makes a shorter one.
   [[nodiscard]] virtual bool resolves_slips(Dynamics& dynamics, double theta, const double* y);
-  /// Returns the fraction of the step in which all rotations stay within their limits (turn_limit.h); 1: all of it.
+  /// Returns the fraction of the step in which all rotations stay within their limits (turn_limit.h); 1 for the whole step.
   [[nodiscard]] double turns_kept(const Dynamics& dynamics) { return turn_limit_.kept(dynamics.layout(), y0_.data(), y1_.data()); }
-  /// Withdraws the step made; step() will make one with this fraction of its length. Returns false if the method cannot.
+  /// Withdraws the last step; the next step() attempts `share` of its length. Returns false if the method cannot withdraw steps.
   [[nodiscard]] virtual bool shorten(Dynamics& dynamics, double share) { return withdraw(dynamics, share * h_); }
-  /// Sets an upper limit of steps, s. Simulation sets it whenever the harmonics of loads and drives change.
+  /// Sets an upper limit of the step length, s. Simulation updates it whenever the harmonics of loads and drives change.
   virtual void limit_step(double longest) { longest_step_ = longest; }
-  /// Allocates the memory for steps from (t, y) in the present layout, so that they do not allocate.
+  /// Allocates memory for steps from (t, y) in the present layout, so that step() does not allocate.
   virtual void reserve(Dynamics&, double, const double*) {}
   /// Sets the length of the first step, s, of an adaptive method.
   virtual void propose_step(double) {}
@@ -68,24 +68,24 @@ public:
   static constexpr double k_largest_turn = 1.6;
   /// Makes one step, at most to t_limit. Throws NumericalFailure if it is impossible.
   virtual void step(Dynamics& dynamics, double t_limit) = 0;
-  /// Repeats the step made so that it ends at theta of it. Used for fixed steps if forces have a kink after an event, since no error
+  /// Repeats the last step so that it ends at `theta` of it. Used for fixed steps if forces have a kink after an event, since no error
   /// estimate has shortened them. Returns false if the step was left unchanged.
   virtual bool end_at(Dynamics& dynamics, double theta);
-  /// Tells that the step is used only up to theta, because of an event. Dissipated energy and work are then computed there as accurately as
-  /// at the end of a step. May evaluate.
+  /// Announces that only the part of the step up to theta is used, because of an event. Dissipated energy and work are then computed
+  /// there as accurately as at the end of a step. May evaluate `dynamics`.
   virtual void cut_at(Dynamics& /*dynamics*/, double /*theta*/) {}
-  /// Writes the state at t0 + theta·h, 0 ≤ theta ≤ 1, to `out`. May evaluate.
+  /// Writes the state at t0 + theta·h, 0 ≤ theta ≤ 1, to `out`. May evaluate `dynamics`.
   virtual void dense(Dynamics& dynamics, double theta, double* out) = 0;
   /// Makes the end of the step the start of the next one.
   virtual void accept();
-  /// Returns, for explicit methods, h times the fastest rate in the step divided by the method's stability limit. Above 1 stability and not
-  /// accuracy limits the step. 0: unknown.
+  /// Returns, for explicit methods, h times the fastest rate in the step divided by the method's stability limit. Above 1 the step is
+  /// limited by stability, not by accuracy. Returns 0 if unknown.
   [[nodiscard]] virtual double stability_share(Dynamics& /*dynamics*/) { return 0.0; }
   /// Returns the state at the end of the step for methods that determine contact modes and friction phases themselves (time stepping);
-  /// `dynamics` then has this state. Null for all others.
+  /// `dynamics` is then set to this state. Returns null for all other methods.
   [[nodiscard]] virtual const State* stepped_state() const { return nullptr; }
 
-  // --- the step made ------------------------------------------------------------------------------
+  // --- results of the last step -------------------------------------------------------------------
   [[nodiscard]] double t0() const { return t0_; }
   [[nodiscard]] double h() const { return h_; }
   [[nodiscard]] double t1() const { return t1_; }
@@ -102,14 +102,14 @@ public:
 
   /// Returns the relative local tolerance; 0 for methods with fixed steps.
   [[nodiscard]] double tolerance() const { return is_adaptive() ? settings_.tolerance : 0.0; }
-  /// Returns the accuracy of velocities in the step made, m/s: by the tolerance, or by rounding.
+  /// Returns the accuracy of velocities in the last step, m/s: given by the tolerance, or by rounding for fixed steps.
   [[nodiscard]] double rate_accuracy(const Dynamics& dynamics) const;
-  /// Returns the accuracy of positions, m, and angles, rad, in the step made.
+  /// Returns the accuracy of positions, m, and angles, rad, in the last step.
   [[nodiscard]] double place_accuracy(const Dynamics& dynamics) const;
   /// Statistics of fixed steps that were divided because bodies turned too far.
   struct DividedSteps {
     long count = 0;
-    double shortest = std::numeric_limits<double>::infinity(); ///< s
+    double shortest = std::numeric_limits<double>::infinity(); ///< shortest of these steps, s
     int a = k_ground, b = k_ground;                            ///< pair of bodies with the fastest relative rotation
   };
   [[nodiscard]] const DividedSteps& divided_steps() const { return divided_; }
@@ -120,22 +120,22 @@ public:
 
 protected:
   virtual void on_restart(Dynamics& /*dynamics*/) {}
-  /// Withdraws the step made and tries h next. Returns false if the method cannot.
+  /// Withdraws the last step and proposes the length h, s, for the next attempt. Returns false if the method cannot withdraw steps.
   [[nodiscard]] virtual bool withdraw(Dynamics& /*dynamics*/, double /*h*/) { return false; }
   [[nodiscard]] bool are_dense_evaluations_expected() const { return are_dense_evaluations_expected_; }
   void begin_at(Dynamics& dynamics, double t, const double* y);
   void note_begin(Dynamics& dynamics);
-  /// Sets where the rates at both ends are stored; methods with more stages use their own arrays.
+  /// Sets where the rates at both ends are stored. Methods with more stages use their own arrays.
   void set_rate_storage(double* k0, double* k1) {
     k0_ = k0;
     k1_ = k1;
   }
-  /// Projects y1 onto the constraints and evaluates there: rates to k1, event functions to watch1.
+  /// Projects y1 onto the constraints and evaluates there: rates to k1, event functions to event_value1_.
   void finish_step(Dynamics& dynamics);
-  /// As finish_step(). Returns false if the end cannot be projected; a shorter step may succeed. (Example: friction that would hold until
-  /// an event early in the step turns a body far beyond it.)
+  /// As finish_step(). Returns false if the end cannot be projected; a shorter step may succeed. (Example: friction that would hold only
+  /// until an event early in the step turns a body far beyond that event.)
   [[nodiscard]] bool try_finish_step(Dynamics& dynamics);
-  /// Stores how accurately slip velocities must be known at the last evaluation (Dynamics::slip_scales).
+  /// Stores the accuracy required of slip velocities at the last evaluation (Dynamics::slip_scales).
   void note_slips(Dynamics& dynamics, std::vector<double>& scale, bool& is_any);
   void begin_event_nodes() {
     nodes_.clear();
@@ -151,7 +151,7 @@ protected:
     if (settings_.max_step > 0.0) h = std::min(h, settings_.max_step);
     return std::min(h, longest_step_);
   }
-  /// Returns `h` limited by the rotation of bodies in the next step; `division` as in TurnLimit.
+  /// Returns `h` limited by the rotation of bodies in the next step. `division`: as in TurnLimit::longest().
   [[nodiscard]] double limited_by_turns(const Dynamics& dynamics, double h, int division) {
     return turn_limit_.longest(dynamics.layout(), y0_.data(), k0_, h, division);
   }
@@ -160,11 +160,12 @@ protected:
   /// Updates the weights of the error norm: 1/(tolerance · scale) per number of the state, 0 for locked coordinates.
   void update_weights(Dynamics& dynamics);
   [[nodiscard]] double error_norm(const double* error) const;
-  /// Returns the error norm, near singular positions without most of the part that projection removes. A small fraction of it remains,
-  /// because the directions change within a step. Changes `error`. Precondition: the last evaluation was near the end of the step.
+  /// Returns the error norm. Near singular positions the component of the error that projection removes gets a small weight only,
+  /// because the directions of the constraints change within a step. Changes `error`. Precondition: the last evaluation was near the end
+  /// of the step.
   [[nodiscard]] double projected_error_norm(Dynamics& dynamics, double* error) const;
   [[nodiscard]] double first_step(Dynamics& dynamics, int order, double h_max);
-  /// Throws NumericalFailure if a step of length h, s, would be no longer than the rounding errors of time.
+  /// Throws NumericalFailure if a step of length h, s, would not exceed the rounding errors of time.
   void refuse_shorter_than_rounding(double h) const;
   /// Returns the data of a singular crossing by a step of h_ from t0_.
   [[nodiscard]] SingularCrossing::Step crossing_step(Dynamics& dynamics);
@@ -175,7 +176,7 @@ protected:
   const System& system_;
   IntegratorSettings settings_;
   int n_ = 0;                 ///< present dimension of the state
-  bool is_restarted_ = false; ///< no step since the last restart
+  bool is_restarted_ = false; ///< no step has been made since the last restart
   bool are_dense_evaluations_expected_ = true;
   double t0_ = 0.0, t1_ = 0.0, h_ = 0.0;
   std::vector<double> y0_, y1_, weight_, scratch_;
@@ -186,16 +187,18 @@ protected:
   double longest_step_ = std::numeric_limits<double>::infinity();
   TurnLimit turn_limit_;
   DividedSteps divided_;
-  double last_rigid_joint_evaluation_ = 0.0;      ///< theta at which merged joints were last evaluated inside the step
-  std::vector<double> slip_scale0_, slip_scale1_; ///< per rate, then speeds (Dynamics::slip_scales)
-  std::vector<double> slip_scale_inside_;         ///< at the end of the used part of the step
+  double last_rigid_joint_evaluation_ = 0.0; ///< theta of the last evaluation of joints inside clusters
+  /// Per velocity: speed scale of slip (Dynamics::slip_scales) at the start and the end of the step.
+  std::vector<double> slip_scale0_, slip_scale1_;
+  std::vector<double> slip_scale_inside_; ///< speed scale of slip at the end of the used part of the step
   bool has_slip_scale0_ = false, has_slip_scale1_ = false;
-  double slip_care_ = 1.0;  ///< factor on the permitted errors of slip velocities; below 1 if the output within a step is not checked
-  double decay_rate_ = 0.0; ///< of slip laws at the start of the next step, 1/s; 0 for adaptive methods
+  double slip_care_ = 1.0; ///< factor on the permitted errors of slip velocities; below 1 for methods whose dense output is not checked
+  /// Fastest decay rate of velocity-dependent friction at the start of the next step, 1/s; 0 for adaptive methods.
+  double decay_rate_ = 0.0;
   long steps_ = 0, rejections_ = 0;
   Residual residual_;
   double length_scale_ = 1.0;
-  double rate_floor_ = 1.0; ///< 1/s: times a length, the velocity below which error tolerances are absolute
+  double rate_floor_ = 1.0; ///< rate, 1/s, that times a length gives the velocity below which errors are absolute
 };
 
 /// Creates the method with this name, one of methods() (mbd/model/method.h). Throws std::invalid_argument for an unknown name.

@@ -9,7 +9,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_stretch = 1e-6; // relative: steps may be longer than requested by this
+constexpr double k_stretch = 1e-6; // steps may be longer than requested by this relative amount
 
 class Moreau final : public Integrator {
 public:
@@ -22,8 +22,8 @@ public:
   [[nodiscard]] const State* stepped_state() const override { return &state_; }
 
   void step(Dynamics& dynamics, double t_limit) override {
-    // The remaining time up to the limit is divided into equal steps. Summed steps would miss the limit by rounding, and a last step of
-    // that length would be meaningless.
+    // The remaining time up to the limit is divided into equal steps. A sum of steps would miss the limit by rounding, and require a
+    // meaningless last step of that length.
     const double left = t_limit - t0_, count = steps_to(t_limit, left);
     h_ = count > 1.0 ? left / count : left;
     const double turned = limited_by_turns(dynamics, h_, settings_.division);
@@ -37,11 +37,12 @@ public:
     stepping_.step(dynamics, state_, t1_, settings_.projection_tolerance);
     residual_.position = std::max(residual_.position, stepping_.residual().position);
     residual_.velocity = std::max(residual_.velocity, stepping_.residual().velocity);
-    // Both ends are packed in the layout of the new phases, so that they can be interpolated.
+    // Both ends are packed in the layout of the new phases, because interpolation needs equal layouts.
     n_ = dynamics.dimension();
     dynamics.pack(start_, y0_.data());
     dynamics.pack(state_, y1_.data());
-    std::fill(event_value1_.begin(), event_value1_.end(), 1.0); // event functions are not used, nor rates: the run restarts after each step
+    // Event functions and rates are not used: the method restarts after each step.
+    std::fill(event_value1_.begin(), event_value1_.end(), 1.0);
     ++steps_;
   }
 
@@ -66,7 +67,7 @@ private:
   State state_, start_;
   std::vector<double> k_;
   double limit_ = -1.0; ///< limit for which part_ was computed, s
-  double part_ = 0.0;   ///< s
+  double part_ = 0.0;   ///< length of the divided steps up to limit_, s
 };
 
 } // namespace

@@ -15,9 +15,9 @@ namespace {
 
 // If a slip law changes velocities faster than the step, steps are shortened to this fraction of its time constant.
 constexpr double k_decay_share = 0.5;
-// When a slip comes to rest, |ν| → 0, steps decrease from this fraction of the characteristic time on (0.25 ms for bodies of 1 m), with the
-// power 3/4 of the time left. The motion behaves like x^(1+λ), λ > 0, in the time left x, and with this rule the sum of the step errors, h⁴
-// ∫ x³ x^(λ−4) dx, remains of order 4.
+// When a slip comes to rest, |ν| → 0, steps decrease in proportion to the power 3/4 of the time left, x, starting at this fraction of
+// the characteristic time (0.25 ms for bodies of 1 m). The motion behaves like x^(1+λ), λ > 0, so the sum of the step errors, h⁴ ∫ x³
+// x^(λ−4) dx, remains of order 4.
 constexpr double k_rest_layer = 2.5e-4 * k_metre_rate;
 
 class Rk4 final : public Integrator {
@@ -89,7 +89,7 @@ private:
       step = turned;
       note_divided(step / settings_.division);
     }
-    // A remainder that is only rounding is added to the last step.
+    // A remainder of the size of rounding is added to the last step.
     is_cut_at_limit_ = left <= step * (1.0 + 1e-9);
     parts_left_ = settings_.division;
     part_ = (is_cut_at_limit_ ? left : step) / settings_.division;
@@ -103,8 +103,8 @@ private:
     const double share = scene_rate(system_) / (k_rest_layer * decay_rate_);
     return std::min(h, longest * std::sqrt(share * std::sqrt(share)));
   }
-  // The derivative of the quintic divides the rounding errors of positions by h, which is too inaccurate for very short steps. There
-  // velocities are interpolated by cubic polynomials.
+  // For very short steps velocities are interpolated by cubic polynomials: the derivative of the quintic divides the rounding errors of
+  // positions by h.
   void velocities_by_cubic(int n, double theta, double* out) const {
     const double s = theta, r = 1.0 - theta;
     for (int i = n; i < 2 * n; ++i)
@@ -116,11 +116,11 @@ private:
     for (int i = 0; i < n_; ++i) y[i] = y0_[i] + c * h_ * previous[i];
     evaluate_stage(dynamics, t0_ + c * h_, y, k(index), c);
   }
-  std::vector<double> k_, kept_; ///< kept_: state at the end of a step that is repeated in parts
+  std::vector<double> k_, kept_; ///< stages; kept_: state at the end of a step that is repeated in parts
   int stride_;
   double last_decay_rate_ = 0.0; ///< decay rate at the start of the last step, 1/s
   double part_ = 0.0;            ///< length of a part of the present step, s
-  int parts_left_ = 0;           ///< parts of it still to be made
+  int parts_left_ = 0;           ///< number of parts of the present step still to be made
   bool is_cut_at_limit_ = false; ///< the step ends at the limit
 };
 

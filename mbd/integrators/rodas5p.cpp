@@ -34,13 +34,13 @@ public:
   Rodas5p(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
       : Integrator(dynamics, settings, max_dimension), k_(2 * max_dimension), u_(8 * max_dimension), rate_(max_dimension),
         slope_(max_dimension), right_(max_dimension), raw_(max_dimension), stride_(max_dimension), next_h_(settings.step) {
-    slip_care_ = 0.1; // as in tsit5: nothing checks the output within a step
+    slip_care_ = 0.1; // same reason as in tsit5: the dense output is not checked
     set_rate_storage(k_.data(), k_.data() + stride_);
     control_.order = 5;
   }
   void propose_step(double h) override { next_h_ = h; }
   void reserve(Dynamics& dynamics, double t, const double* y) override {
-    constexpr double k_any_step = 1e-6; // s
+    constexpr double k_any_step = 1e-6; // first step of reserve(), s; any length is suitable
     linearization_.evaluate(dynamics, t, y);
     system_of_stages_.set(linearization_, dynamics.layout());
     static_cast<void>(system_of_stages_.factor(k_any_step));
@@ -53,7 +53,7 @@ public:
   void dense(Dynamics& dynamics, double theta, double* out) override {
     if (is_crossing_) return crossing_->dense(theta, crossing_step(dynamics), out);
     interpolate(theta, out);
-    // Integral of the cubic through the powers at Lobatto's points.
+    // Integral of the cubic through the powers at the Lobatto points.
     const int e = n_ - 2;
     for (int i = 0; i < 2; ++i)
       out[e + i] = y0_[e + i] + power_span_ * h_ * power_integral(theta / power_span_, power_[i]) + theta * settled_[i];
@@ -74,7 +74,7 @@ protected:
     control_.previous_error = saved_control_.error;
     next_h_ = h;
     refuse_shorter_than_rounding(h);
-    dynamics.rates(t0_, y0_.data(), scratch_.data()); // the next try starts there
+    dynamics.rates(t0_, y0_.data(), scratch_.data()); // leaves `dynamics` evaluated at the start of the next attempt
     return true;
   }
 
@@ -92,16 +92,16 @@ private:
   std::vector<double> k_, u_, rate_, slope_, right_, raw_;
   int stride_;
   double settled_[2] = {};
-  double power_[2][4] = {}; ///< powers of dissipation and work at 0, the two inner points, and 1
-  double power_span_ = 1.0; ///< fraction of the step that these points divide
+  double power_[2][4] = {}; ///< powers of dissipation and work at 0, the two inner Lobatto points, and 1
+  double power_span_ = 1.0; ///< fraction of the step that the points of power_ span
   Linearization linearization_;
   StageSystem system_of_stages_;
   StepControl control_;
   double next_h_ = 0.0;
   std::unique_ptr<SingularCrossing> crossing_; ///< created when the first crossing occurs
   SingularApproach approach_;
-  bool is_crossing_ = false; ///< the step made is a crossing
-  /// Control data before the step made, restored if it is withdrawn.
+  bool is_crossing_ = false; ///< the last step is a singular crossing
+  /// Step-control data before the last step, restored by withdraw().
   struct SavedControl {
     SingularApproach approach;
     double error = 1e-4;
@@ -109,7 +109,7 @@ private:
   SavedControl saved_control_;
 };
 
-// Computes ∂F/∂t at (t0, y0) from five points forward (order 4).
+// Computes ∂F/∂t at (t0, y0) by forward differences with five points (order 4).
 void Rodas5p::find_time_slope(Dynamics& dynamics) {
   const double d = k_time_step * h_;
   const int n = n_ - 2;
@@ -120,7 +120,7 @@ void Rodas5p::find_time_slope(Dynamics& dynamics) {
   for (int p = 3; p >= 0; --p) {
     dynamics.evaluate(Request::rates_without_projection, t0_ + (p + 1) * d, y0_.data(), f);
     is_still = is_still && std::equal(f, f + n, k0_);
-    if (is_still && p < 3) break; // equal at three times: no explicit time dependence
+    if (is_still && p < 3) break; // equal at the first three points: no explicit time dependence
     for (int i = 0; i < n; ++i) slope_[i] += weights[p] / d * f[i];
   }
   if (is_still) std::fill(slope_.begin(), slope_.end(), 0.0);
@@ -151,7 +151,7 @@ double Rodas5p::try_step(Dynamics& dynamics) {
     for (int k = 0; k < n; ++k) right_[k] += f[k];
     system_of_stages_.solve(right_.data(), u(static_cast<int>(i)));
   }
-  // The argument of the last stage is the embedded solution, and its u is the error estimate.
+  // The argument of the last stage is the embedded solution, so u of this stage is the error estimate.
   const double* const last = u(7);
   for (int k = 0; k < n; ++k) y1_[k] = y[k] + last[k];
   std::copy(last, last + n, scratch_.begin());
@@ -167,7 +167,7 @@ void Rodas5p::interpolate(double theta, double* out) {
   const double s = theta, r = 1.0 - theta;
   double weight[8];
   for (std::size_t j = 0; j < 8; ++j) weight[j] = s * r * (H[0][j] + s * (H[1][j] + s * H[2][j]));
-  // The displacement by projection is distributed over the step, so that the dense output agrees with the projected end.
+  // The displacement by projection is distributed smoothly over the step, so that the dense output ends at the projected state.
   const double blend = s * s * (3.0 - 2.0 * s);
   // Computed as position at the start plus displacement. The form (1 − s) y₀ + s y₁ would change a constant position by rounding, and
   // contacts at rest would open or close.
@@ -178,7 +178,7 @@ void Rodas5p::interpolate(double theta, double* out) {
   }
 }
 
-// Returns ∫₀^θ of the cubic with these values at 0, a, 1 − a, 1, by Newton's divided differences.
+// Returns ∫₀^θ of the cubic with the values `power` at 0, a, 1 − a, 1, by Newton's divided differences.
 double Rodas5p::power_integral(double theta, const double* power) {
   const double x[4] = {0.0, k_lobatto[0], k_lobatto[1], 1.0};
   double d[4] = {power[0], power[1], power[2], power[3]};
@@ -203,13 +203,13 @@ void Rodas5p::finish_powers(Dynamics& dynamics) {
   }
   for (int i = 0; i < 2; ++i) {
     power_[i][3] = k1_[e + i];
-    settled_[i] = y1_[e + i] - y0_[e + i]; // energy by the correction of inner states at the end of the step
+    settled_[i] = y1_[e + i] - y0_[e + i]; // change of the energy integrals when inner states were corrected at the end of the step
     y1_[e + i] += h_ * power_integral(1.0, power_[i]);
   }
 }
 
-// Integrates up to θ by a separate Lobatto rule. The cubic through the powers of the whole step is less accurate at θ than at its end, and
-// after an event these powers may belong to a law that is no longer valid.
+// Integrates energy and work up to θ by a Lobatto rule of its own. The cubic through the powers of the whole step is less accurate at θ
+// than at its end, and after an event at θ these powers may belong to a law that is no longer valid.
 void Rodas5p::cut_at(Dynamics& dynamics, double theta) {
   if (is_crossing_ || !(theta > 0.0) || theta == power_span_) return;
   const int e = n_ - 2;
@@ -237,11 +237,11 @@ double Rodas5p::error_of_powers() const {
     const double share = std::abs((p[0] + p[3] + 5.0 * (p[1] + p[2])) / 12.0 - 0.5 * (p[1] + p[2])) / largest;
     worst = std::max(worst, k_share_of_cube * h_ * largest * share * share * share * weight_[e + i]);
   }
-  return worst / std::sqrt(static_cast<double>(n_)); // contribution to the norm, a root mean square
+  return worst / std::sqrt(static_cast<double>(n_)); // divided by √n because the error norm is a root mean square over n numbers
 }
 
-// After a try that came near a singular position: crosses it by one step of collocation with the position between two of its stages.
-// Returns true if this succeeded.
+// After an attempt that came near a singular position: crosses that position by one collocation step, with the position between two
+// stages. Returns true if this succeeded.
 bool Rodas5p::cross_singularity(Dynamics& dynamics, double left) {
   if (!crossing_) crossing_ = std::make_unique<SingularCrossing>(stride_);
   const double ahead = h_ * crossing_->locate(dynamics, crossing_step(dynamics));

@@ -6,7 +6,7 @@ namespace steplap {
 
 namespace {
 
-// Other pivots give other entries, so capacity is reserved in advance.
+// Capacity is reserved in advance, because other pivots give vectors of other lengths.
 void make_room(SparseVectors& vectors) {
   const std::size_t size = vectors.place.size();
   if (vectors.place.capacity() >= size + size / 4) return;

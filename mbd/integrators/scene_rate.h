@@ -1,8 +1,8 @@
-// Characteristic rate of a scene, which defines what counts as slow or short: the rate at which its bodies fall by their own length.
+// Characteristic rate of a scene, the scale for "slow" and "short": the rate at which its bodies fall by their own length.
 //
-// Without gravity no such rate is known before the run, so that of bodies of 1 m under gravity is used; scenes without gravity therefore do
-// not scale with time. The duration of the run would not be suitable instead: it makes short runs of stiff joints too coarse, and changes
-// the ends of slips in long ones.
+// Without gravity no such rate is known before the run, so the rate of bodies of 1 m under gravity is used; scenes without gravity
+// therefore do not scale with time. The duration of the run is not suitable as a scale: it would make short runs of stiff joints too
+// coarse, and change the ends of slips in long ones.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -17,10 +17,10 @@ inline constexpr double k_metre_rate = 3.1320919526731650; ///< 1/s: √(9.81 m/
 /// Returns the characteristic rate, 1/s.
 [[nodiscard]] inline double scene_rate(const System& system) { return system.gravity.isZero(0.0) ? k_metre_rate : system.scale.rate; }
 
-/// Returns the magnitude of time that a step length is compared with to decide whether it is only rounding: |t|, but at least a small
+/// Returns the time, s, to which a step length is compared to decide whether the step is only rounding: |t|, but at least a small
 /// fraction of the characteristic time.
 [[nodiscard]] inline double rounding_time_scale(double t, const System& system) {
-  constexpr double k_least_share = 3.132e-3; // 1 ms for bodies of a metre
+  constexpr double k_least_share = 3.132e-3; // fraction of the characteristic time: 1 ms for bodies of 1 m
   return std::max(std::abs(t), k_least_share / scene_rate(system));
 }
 

@@ -12,9 +12,9 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_rounds = 40, k_max_setbacks = 4;
-constexpr double k_agreement = 1e-2;   // relative to the tolerance: largest change of the end from one iteration to the next
-constexpr double k_rounded = 2e-11;    // relative to the step length: change that may be rounding
-constexpr double k_dense_share = 1e-3; // weight of the error of the polynomial relative to that of the end of the step
+constexpr double k_agreement = 1e-2;   // convergence: largest change of the end of the step between iterations, relative to the tolerance
+constexpr double k_rounded = 2e-11;    // change between iterations that may be rounding, relative to the step length
+constexpr double k_dense_share = 1e-3; // weight of the error of the collocation polynomial, relative to the error of the end of the step
 constexpr double k_infinite = std::numeric_limits<double>::infinity();
 
 struct Legendre {
@@ -120,8 +120,8 @@ double SingularCrossing::distance(Dynamics& dynamics, const Step& step, double t
   return std::sqrt(dynamics.layout().smallest_pivot());
 }
 
-// The distance decreases and increases linearly on both sides of the position. Walks until it increases, with strides chosen to arrive
-// within a few samples.
+// Finds the singular position by samples of the distance from it, which decreases linearly before and increases after. Step widths are
+// chosen so that a few samples suffice.
 double SingularCrossing::locate(Dynamics& dynamics, const Step& step) {
   constexpr int k_most_samples = 10;
   constexpr double k_first = 0.25, k_strides = 3.0, k_near = 0.2;
@@ -165,7 +165,7 @@ void SingularCrossing::evaluate(Dynamics& dynamics, const Step& step, int stage)
   dynamics.rates(t, state(stage), rate(stage));
 }
 
-// Initial guess of a stage: from the previous one, with the rates of up to four stages before (Adams' method).
+// Initial guess of a stage: continues from the previous stage with the rates of up to four stages before (Adams' method).
 void SingularCrossing::begin_stage(Dynamics& dynamics, const Step& step, int stage) {
   constexpr int k_most = 4;
   const auto& c = gauss_table().c;
@@ -173,7 +173,7 @@ void SingularCrossing::begin_stage(Dynamics& dynamics, const Step& step, int sta
   double node[k_most], weight[k_most];
   const double* rates[k_most];
   for (int j = 0; j < count; ++j) {
-    const int i = stage - 1 - j; // −1: start of the step
+    const int i = stage - 1 - j; // stage index; −1: start of the step
     node[j] = i < 0 ? 0.0 : c[i];
     rates[j] = i < 0 ? step.rate0 : rate(i);
   }
@@ -187,7 +187,7 @@ void SingularCrossing::begin_stage(Dynamics& dynamics, const Step& step, int sta
   evaluate(dynamics, step, stage);
 }
 
-// Updates all stages from the rates of the last iteration, and the end of the step; projects them onto the constraints.
+// Computes new stages and a new end of the step from the rates of the last iteration, and projects them onto the constraints.
 void SingularCrossing::iterate(Dynamics& dynamics, const Step& step, double* y1) {
   const GaussTable& table = gauss_table();
   const auto combine = [&](const std::array<double, k_stages>& weights, double* y) {
@@ -203,9 +203,9 @@ void SingularCrossing::iterate(Dynamics& dynamics, const Step& step, double* y1)
   dynamics.project(step.t0 + step.h, y1, 0.0);
 }
 
-// The polynomial of degree 7 through the rates of the stages has some error δ at the start, where the rate is known. The end of the step,
-// exact to degree 15, has an error of δ times the relative size of δ. The part of δ that violates the constraints is rounding and is
-// removed.
+// The polynomial of degree 7 through the rates of the stages has an error δ at the start of the step, where the rate is known. The end
+// of the step, exact to degree 15, then has an error of δ times the relative magnitude of δ. The component of δ that violates the
+// constraints is rounding and is removed.
 double SingularCrossing::error_of(Dynamics& dynamics, const Step& step) {
   const auto w = gauss_table().weights_at(0.0);
   double* const off = work_.data();
@@ -223,8 +223,8 @@ double SingularCrossing::error_of(Dynamics& dynamics, const Step& step) {
   return std::max(size > 0.0 ? delta * delta / size : delta, k_dense_share * delta);
 }
 
-// Iterates until the end of the step no longer changes. Each iteration should gain a digit; one that does not has reached the level of
-// rounding, which occasionally throws a stage far off.
+// Iterates until the end of the step no longer changes. Each iteration should gain a digit; if one does not, the change has reached
+// rounding, which occasionally moves a stage far off.
 bool SingularCrossing::settle(Dynamics& dynamics, const Step& step, double* y1) {
   double* const change = work_.data();
   double* const before = change + stride_;
@@ -251,7 +251,7 @@ double SingularCrossing::cross(Dynamics& dynamics, const Step& step, double* y1)
   try {
     for (int i = 0; i < k_stages; ++i) begin_stage(dynamics, step, i);
     if (!settle(dynamics, step, y1)) return k_infinite;
-    for (int i = 0; i < k_stages; ++i) { // the stages become nodes of the event functions
+    for (int i = 0; i < k_stages; ++i) { // the stages become nodes of the event functions (EventNodes)
       evaluate(dynamics, step, i);
       step.record_stage(rate(i), gauss_table().c[i]);
     }

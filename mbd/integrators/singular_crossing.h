@@ -1,10 +1,10 @@
-// One step across a singular position of joints (for example a parallelogram that folds flat), by collocation.
+// One collocation step across a singular position of joints (for example a parallelogram that folds flat).
 //
-// Near such a position the relative rounding error of accelerations grows with the inverse square of the distance, and at the position they
-// are undefined. The motion itself is smooth, and a polynomial through the accelerations on both sides continues it. The stages of Gauss'
-// method of order 16 are eight states on the constraints, with the singular position between two of them. They are iterated until they
-// agree. In contrast to the stages of an explicit method, each then has the accuracy of the end. (Hairer, Nørsett, Wanner, Solving ODEs I,
-// II.7.)
+// Near such a position the relative rounding error of accelerations grows with the inverse square of the distance, and at the position
+// they are undefined. The motion itself is smooth, so a polynomial through the accelerations on both sides continues it. The stages of
+// Gauss' method of order 16 are eight states on the constraints, with the singular position between two of them; they are iterated until
+// they converge. In contrast to explicit stages, each is then as accurate as the end of the step. (Hairer, Nørsett, Wanner, Solving ODEs
+// I, II.7.)
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
@@ -16,21 +16,21 @@
 
 namespace steplap {
 
-/// Keeps track of how near steps have come to a singular position, by the smallest pivots (Dynamics::least_pivot), about squares of
-/// distances in rad². Copied, so that it can be restored with a withdrawn step.
+/// Records how near the steps have come to a singular position, by the smallest pivots of the constraints (Dynamics::least_pivot); a
+/// pivot is about the square of the distance in rad². Copyable, so that it can be restored when a step is withdrawn.
 class SingularApproach {
 public:
   void restart() { start_ = highest_ = 1.0; }
   /// Stores the smallest pivot at the end of a step.
   void note_end(double pivot) {
-    const bool is_first = highest_ == 1.0; // the first step defines the usual value
+    const bool is_first = highest_ == 1.0; // the first step defines the pivot far from the position
     start_ = pivot;
     highest_ = is_first ? pivot : std::max(highest_, pivot);
   }
-  /// Returns true if a step with smallest pivot `lowest` came so near that rounding dominates its stages.
+  /// Returns true if a step whose smallest pivot is `lowest` came so near that rounding dominates its stages.
   [[nodiscard]] bool is_beside(double lowest) const { return lowest < k_crossed_pivot && lowest < 0.5 * highest_; }
-  /// Returns true if the position should be crossed by collocation: the pivot decreases (and is not small all the time), and the start of
-  /// the step is not too near to the position, which would make the step tiny.
+  /// Returns true if the position should be crossed by collocation: the pivot decreases (and is not small throughout), and the start of
+  /// the step is not so near that the step would be tiny.
   [[nodiscard]] bool is_ahead(double lowest) const { return is_beside(lowest) && lowest < start_ && start_ > k_closest_start; }
 
 private:
@@ -40,7 +40,7 @@ private:
   double highest_ = 1.0; ///< largest pivot since the last restart
 };
 
-/// The collocation method. It does not allocate after construction.
+/// Collocation by Gauss' method. Does not allocate after construction.
 class SingularCrossing {
 public:
   static constexpr int k_stages = 8;
@@ -48,13 +48,13 @@ public:
   explicit SingularCrossing(int max_dimension);
 
   using Norm = std::function<double(const double* error)>;
-  /// A step to be made, with the norm that defines its tolerance.
+  /// A collocation step, with the norm that defines its tolerance.
   struct Step {
     double t0 = 0.0, h = 0.0;
     const double* y0 = nullptr;
     const double* rate0 = nullptr;
     int n = 0;
-    Norm norm;                                                           ///< error norm; 1 is the tolerance
+    Norm norm;                                                           ///< error norm of a difference of states; 1 is the tolerance
     std::function<void(const double* rates, double theta)> record_stage; ///< called after the last evaluation of each stage
   };
 
@@ -63,9 +63,10 @@ public:
   /// Returns the longest step, at most `left`, for which a position `ahead` s from its start lies between two stages, preferably in the
   /// middle gap, otherwise in a later one; 0 if there is none.
   [[nodiscard]] double length_with_gap_at(double ahead, double left) const;
-  /// Computes stages and end of the step. Returns its error norm, acceptable if ≤ 1; infinite if the iteration does not converge.
+  /// Computes the stages and the end y1 of the step. Returns the error norm, acceptable if ≤ 1; infinite if the iteration does not
+  /// converge.
   double cross(Dynamics& dynamics, const Step& step, double* y1);
-  /// Writes the state at t0 + theta h of the last step, before its end was projected.
+  /// Writes the state at t0 + theta h of the last step to `out`, before the end of the step was projected.
   void dense(double theta, const Step& step, double* out) const;
 
 private:

@@ -18,8 +18,8 @@ void SparseLu::begin(int n) {
   else added_.clear();
 }
 
-// The pattern differs from here on. The entries so far are recovered from the sums, one value for each place; the following ones are stored
-// as they come.
+// The pattern differs from entry k on. The values of the entries before k are recovered from the sums in values_, and later entries are
+// appended.
 void SparseLu::add_unknown(std::size_t k, int row, int column, double value) {
   if (is_known_) {
     added_.assign(k, 0.0);
@@ -33,7 +33,7 @@ void SparseLu::add_unknown(std::size_t k, int row, int column, double value) {
   added_.push_back(value);
 }
 
-// Sorts the entries by columns, merges those at the same place, and determines the order of elimination.
+// Sorts the entries by column, merges those at the same matrix position, and determines the order of elimination.
 void SparseLu::analyze() {
   const std::size_t count = rows_.size();
   std::vector<int> sorted(count);
@@ -78,7 +78,7 @@ void SparseLu::analyze() {
 }
 
 bool SparseLu::factor() {
-  if (is_known_ && count_ != rows_.size()) { // the pattern is a proper part of the previous one
+  if (is_known_ && count_ != rows_.size()) { // the entries are only the first ones of the analysed pattern
     added_.assign(count_, 0.0);
     for (std::size_t i = count_; i-- > 0;) std::swap(added_[i], values_[places_[i]]);
     rows_.resize(count_);
@@ -91,7 +91,7 @@ bool SparseLu::factor() {
   return (has_pivots_ && refactor()) || factor_anew();
 }
 
-// Depth-first search: adds the rows of L reached from `row`, in topological order backwards from `top` in found_.
+// Depth-first search: puts the rows of L reached from `row` into found_, in topological order, from index `top` downwards.
 void SparseLu::visit(int row, int& top) {
   int depth = 0;
   stack_[0] = row;
@@ -165,7 +165,7 @@ bool SparseLu::factor_anew() {
     }
     l_begin_.push_back(static_cast<int>(l_.size()));
   }
-  // Other pivots give other fill-in, so capacity is reserved in advance.
+  // Capacity is reserved in advance, because other pivots give other fill-in.
   const auto make_room = [](auto& list) {
     if (list.capacity() < list.size() + list.size() / 4) list.reserve(2 * list.size());
   };
@@ -191,7 +191,7 @@ bool SparseLu::refactor() {
     const double pivot = work_[pivot_[k]];
     double largest = 0.0;
     for (int e = l_begin_[k]; e < l_begin_[k + 1]; ++e) largest = std::max(largest, std::abs(work_[l_row_[e]]));
-    if (!(std::abs(pivot) > k_pivot_share * largest)) return false; // also false for 0/0
+    if (!(std::abs(pivot) > k_pivot_share * largest)) return false; // the comparison is also true for 0/0
     inverse_pivot_[k] = 1.0 / pivot;
     work_[pivot_[k]] = 0.0;
     for (int e = l_begin_[k]; e < l_begin_[k + 1]; ++e) {
@@ -216,7 +216,7 @@ void SparseLu::finish(const double* y, double* x) {
   finish_work(x);
 }
 
-// Computes x = B work_ and sets work_ to zero.
+// Computes x = B work_ (second half of the solution) and sets work_ to zero.
 void SparseLu::finish_work(double* x) {
   for (int k = n_ - 1; k >= 0; --k) {
     const double value = work_[k] * inverse_pivot_[k];
@@ -233,8 +233,8 @@ void SparseLu::start_at(int position, double value) {
   queue_.push_back(position);
 }
 
-// Eliminates the entries of work_ that are not zero in ascending order, and appends the results. Later steps depend only on earlier ones,
-// so each step is final when it is the least in the queue.
+// Eliminates the nonzero entries of work_ in ascending order of steps, and appends the results to `out`. A step depends only on earlier
+// ones, so the least step in the queue is final.
 template <class Column> void SparseLu::append_reached(const Column& column, SparseVectors& out) {
   std::make_heap(queue_.begin(), queue_.end(), std::greater<>());
   while (!queue_.empty()) {

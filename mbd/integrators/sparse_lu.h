@@ -15,9 +15,9 @@
 
 namespace steplap {
 
-/// Sparse vectors one after the other, each with ascending places.
+/// Several sparse vectors stored one after the other, each with ascending indices.
 struct SparseVectors {
-  std::vector<std::size_t> begin{0}; ///< one more than there are vectors
+  std::vector<std::size_t> begin{0}; ///< first entry of each vector, and the end of the last: one more than vectors
   std::vector<int> place;
   std::vector<double> value;
 
@@ -36,9 +36,9 @@ struct SparseVectors {
 /// A sparse matrix A and its LU factors.
 class SparseLu {
 public:
-  /// Begins a matrix of n rows. Its entries must be added in the same order as before if the pattern is the same.
+  /// Starts the assembly of a matrix of n rows. If the pattern is the same as before, entries must be added in the same order.
   void begin(int n);
-  /// Adds an entry. Entries at the same place are summed.
+  /// Adds an entry. Entries at the same matrix position are summed.
   void add(int row, int column, double value) {
     const std::size_t k = count_++;
     if (is_known_ && k < rows_.size() && rows_[k] == row && columns_[k] == column) {
@@ -47,15 +47,15 @@ public:
     }
     add_unknown(k, row, column, value);
   }
-  /// Returns false if the matrix is singular or has entries that are not finite.
+  /// Factorises the matrix. Returns false if it is singular or has entries that are not finite.
   [[nodiscard]] bool factor();
   /// In place: x = A⁻¹ x. Precondition: factor() returned true.
   void solve(double* x);
 
-  // A solution in two halves, A⁻¹ = B F, of which sparse vectors keep most zeros. Precondition as for solve().
-  /// Appends F b for the b with `count` entries at `rows`.
+  // Solution in two factors, A⁻¹ = B F, which keep most zeros of sparse right-hand sides. Precondition as for solve().
+  // Appends F b for the vector b with `count` entries `values` at `rows`.
   void append_forward(const int* rows, const double* values, int count, SparseVectors& out);
-  /// Appends Bᵀ c for the c with `count` entries at `columns`, so that (Bᵀ c)·(F b) = c·A⁻¹b.
+  /// Appends Bᵀ c for the vector c with `count` entries `values` at `columns`, so that (Bᵀ c)·(F b) = c·A⁻¹b.
   void append_backward(const int* columns, const double* values, int count, SparseVectors& out);
   /// Computes x = B y; y has an entry for each row of A.
   void finish(const double* y, double* x);
@@ -78,10 +78,10 @@ private:
 
   int n_ = 0;
   std::size_t count_ = 0; ///< number of entries since begin()
-  bool is_known_ = false; ///< entries so far agree with the analysed pattern
+  bool is_known_ = false; ///< the entries added so far agree with the analysed pattern
   bool has_pivots_ = false;
-  std::vector<int> rows_, columns_; ///< per entry added
-  std::vector<int> places_;         ///< per added entry: index in values_
+  std::vector<int> rows_, columns_; ///< row and column of each added entry
+  std::vector<int> places_;         ///< index in values_ of each added entry
   std::vector<double> added_;       ///< added values while the pattern is unknown
   std::vector<int> begin_, index_;  ///< compressed columns of the matrix
   std::vector<double> values_;
@@ -90,15 +90,16 @@ private:
   std::vector<int> pivot_;    ///< row of pivot k
   std::vector<double> inverse_pivot_;
   std::vector<int> l_begin_, l_row_, u_begin_,
-      u_position_; ///< U's columns in an order of elimination
+      u_position_; ///< columns of U, as elimination steps
   std::vector<double> l_, u_;
-  std::vector<double> work_; ///< per row, zero between calls
+  std::vector<double> work_; ///< scratch vector, one number per row; zero between calls
   std::vector<int> stack_, resume_, found_, mark_;
   int stamp_ = 0;
   bool has_transposed_ = false;
-  std::vector<int> step_of_column_;                              ///< inverse of order_
-  std::vector<int> row_begin_, row_step_, row_place_, row_next_; ///< rows of U: elimination steps of the columns, and places in u_
-  std::vector<int> queue_;                                       ///< heap of elimination steps
+  std::vector<int> step_of_column_; ///< inverse of order_
+  /// U by rows: elimination steps of the columns, and indices in the arrays of U
+  std::vector<int> row_begin_, row_step_, row_place_, row_next_;
+  std::vector<int> queue_; ///< heap of elimination steps
 };
 
 } // namespace steplap

@@ -19,7 +19,8 @@ void StageSystem::set(const Linearization& linearization, const Layout& layout) 
   set_states();
 }
 
-// Determined for every linearisation, because the lists change with the modes.
+// Collects the own states of the model and their coordinates. Repeated for every linearisation, because these lists change with the
+// modes.
 void StageSystem::set_states() {
   const Linearization::StateParts& parts = linearization_->states();
   const auto place_in = [](std::vector<int>& list, int number) {
@@ -97,7 +98,7 @@ void StageSystem::factor_inner() {
   }
 }
 
-// Adds the forces of inner states that do not depend on the velocity part.
+// Adds the part of the forces of inner states that depends on r only, not on the solution.
 void StageSystem::add_inner_forces(const double* r) {
   for (std::size_t i = 0; i < inner_.size(); ++i) {
     const Linearization::InnerBlock& block = linearization_->inner()[i];
@@ -189,7 +190,7 @@ void StageSystem::solve(const double* r, double* u) {
   solve_unknowns();
   for (int i = 0; i < n_; ++i) {
     u[n_ + i] = solution_[i];
-    u[i] = g_ * (r[i] + (w[i] > 0.0 ? solution_[i] : 0.0)); // a locked coordinate has its own rate
+    u[i] = g_ * (r[i] + (w[i] > 0.0 ? solution_[i] : 0.0)); // a locked coordinate follows its prescribed rate
   }
   solve_inner(r, u);
   solve_states(r, u);
@@ -232,7 +233,7 @@ void StageSystem::finish_forces(const double* sum, double* u) {
   }
 }
 
-// Rows that are not held keep their places, so that the pattern does not change.
+// Rows that are not held keep their entries, so that the pattern does not change.
 bool StageSystem::factor_held(const std::vector<ForceRow>& rows, const std::vector<char>& is_held, const std::vector<double>& softness) {
   const std::vector<double>& w = linearization_->inverse_mass();
   const int first = n_ + m_;

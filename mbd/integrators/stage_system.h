@@ -1,7 +1,7 @@
 // Linear system for the stages of a linearly implicit method with constraints (a KKT matrix).
 //
 // A Rosenbrock method for y' = F(t, y), y = (q, v), solves (1/(γh) − ∂F/∂y) u = r in each stage. With q' = v and the linearised
-// accelerations (linearization.h), positions can be eliminated. With W = M⁻¹, g = γh and w the part of the multipliers:
+// accelerations (linearization.h), positions can be eliminated. With W = M⁻¹, g = γh and w the multipliers:
 //
 //   ⎡ I − g W D − g² W K     −W Jᵀ ⎤ ⎡u_v⎤   ⎡ g (r_v + g W K r_q)       ⎤
 //   ⎣ J − g G_v − g² G_q       0   ⎦ ⎣ w ⎦ = ⎣ g (J r_v + g G_q r_q)     ⎦,   u_q = g (r_q + u_v).
@@ -10,26 +10,26 @@
 //
 //   u_z = A (r_z + P u_q + V u_v), A = (1/g − Z)⁻¹, which adds F_z A (g P + V) to D and F_z A (r_z + g P r_q) to the forces.
 //
-// Own states of the model, which may depend on all coordinates and on each other, are eliminated together in the same way. Locked
-// coordinates have W = 0, so that u_v = g r_v. Rows that the Schur complement has found to be redundant are omitted.
+// Own states are further state variables of the model. They may depend on all coordinates and on each other, so they are eliminated
+// together in the same way. Locked coordinates have W = 0, so that u_v = g r_v. Rows that the Schur complement has found redundant are
+// omitted.
 //
-// This assumes that the rates in r satisfy the constraints. An additional force f (friction in time stepping) causes reactions of the
-// constraints only with
+// The rates in r must satisfy the constraints. An additional force f (friction in time stepping) causes only constraint reactions, with
 //
 //   r = (0, W f), the lower right side 0:   J u_v − g G_v u_v − g² G_q u_v = 0.
 //
-// The rate along row i by a force along row j, h_i S⁻¹ g W h_jᵀ, is the product of a half of each (sparse_lu.h). Small systems, which are
-// solved densely, have the whole solution in the half of the force.
+// The rate along row i by a force along row j, h_i S⁻¹ g W h_jᵀ, is the scalar product of one vector for each row (sparse_lu.h). In
+// small systems the vector of the force contains the whole solution.
 //
-// Small systems are solved densely, large ones by sparse factors (sparse_lu.h) whose pattern is kept. After the first solution of a given
-// size nothing is allocated.
+// Small systems are solved densely, large ones by sparse factors (sparse_lu.h) whose pattern is reused. After the first solution of a
+// given size nothing is allocated.
 #pragma once
 
 #include "mbd/base/decompositions.h"
 #include "mbd/dynamics/linearization.h"
 #include "mbd/integrators/sparse_lu.h"
 
-#include <Eigen/LU> // of three rows, and of as many as there are own states
+#include <Eigen/LU> // factors of matrices of order 3, and of the order of the number of own states
 
 namespace steplap {
 
@@ -50,20 +50,21 @@ public:
   /// Solves u = (1/g − ∂F/∂y)⁻¹ r; both consist of q, v (n each) and inner states.
   void solve(const double* r, double* u);
 
-  // The velocities that a unit force along a row causes are a product of two halves, so that sparse ones need not be multiplied out.
-  /// Appends the half F of a force along the row; constraint rows and locks react.
+  // The velocity along one row by a unit force along another is a scalar product of two sparse vectors: append_force() gives that of the
+  // force, append_rate() that of the velocity. append_force() includes the reactions of constraint rows and locks.
   void append_force(const ForceRow& row, SparseVectors& out);
-  /// Appends the half Bᵀ of the rate along a row: its product with append_force() of another is the rate by a unit force along that.
+  /// Appends the vector for the velocity along `row`. Its product with the vector of a force is the velocity along `row` by that force,
+  /// m/s per N.
   void append_rate(const ForceRow& row, SparseVectors& out);
-  /// Number of places of these vectors.
+  /// Returns the dimension of these vectors.
   [[nodiscard]] int places() const { return n_ + m_; }
-  /// Computes the change u of q and v (n each) from a sum of vectors of append_force().
+  /// Computes the change u of q and v (n numbers each) from a weighted sum of vectors of append_force().
   void finish_forces(const double* sum, double* u);
 
-  /// Factorises for forces along the rows held at a given rate, H u + e w = r; the others have none. `softness`: e of each row, positive.
-  /// Returns false if the matrix is singular.
+  /// Factorises H u + e w = r for forces w along the held rows, whose rates r are prescribed; other rows have no force. `softness`: e of
+  /// each row, positive. Returns false if the matrix is singular.
   [[nodiscard]] bool factor_held(const std::vector<ForceRow>& rows, const std::vector<char>& is_held, const std::vector<double>& softness);
-  /// Solves for the forces w, in place of the rates r of the rows.
+  /// Computes the forces w from the rates r of the rows; the result replaces the rates.
   void solve_held(std::vector<double>& rates);
 
 private:
@@ -82,22 +83,22 @@ private:
   MatX matrix_;
   DenseLu dense_;
   SparseLu sparse_;
-  SparseLu held_; ///< of factor_held()
+  SparseLu held_; ///< factors of factor_held()
   VecX held_right_;
   VecX right_, solution_, moved_;
   struct Inner {
-    Mat3 answer;                         ///< A
+    Mat3 answer;                         ///< A of the inner block
     Eigen::Matrix<double, 6, 6> damping; ///< F_z A (g P + V)
   };
   std::vector<Inner> inner_;
-  // Own states: u_z = A (r_z + P u_q + V u_v), restricted to the coordinates that they depend or act on.
+  // Own states: u_z = A (r_z + P u_q + V u_v), restricted to the coordinates on which own states depend or act.
   void set_states();
   void factor_states();
   void add_state_forces(const double* r);
   void solve_states(const double* r, double* u);
-  std::vector<int> states_;                            ///< indices as inner states
-  std::vector<int> state_columns_;                     ///< coordinates that they depend on
-  std::vector<int> state_rows_;                        ///< coordinates that they act on
+  std::vector<int> states_;                            ///< indices of own states among the inner states
+  std::vector<int> state_columns_;                     ///< coordinates on which own states depend
+  std::vector<int> state_rows_;                        ///< coordinates on which own states act
   MatX state_pose_, state_velocity_, state_force_;     ///< P, V, F_z
   MatX state_by_state_, state_answer_, state_damping_; ///< Z, A, F_z A (g P + V)
   VecX state_right_, state_solution_, state_moved_;

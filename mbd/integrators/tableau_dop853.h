@@ -21,8 +21,8 @@ namespace steplap::dop853 {
 
 inline constexpr int k_order = 8;
 inline constexpr int k_dense_order = 7;
-inline constexpr int k_stages = 12;       // of the step itself
-inline constexpr int k_stages_dense = 16; // including f(y₁) and those of the dense output
+inline constexpr int k_stages = 12;       // stages of the step itself
+inline constexpr int k_stages_dense = 16; // stages including f(y₁) and the stages for dense output
 
 inline constexpr std::array<double, 16> c = {0,
                                              0.052600151958767731879,

@@ -10,27 +10,29 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_max_mode_passes = 12;  // after so many passes contact modes cycle: the step is halved
-constexpr int k_max_force_passes = 60; // passes for the normal forces at the end of the step; then it is halved
-constexpr int k_passes_in_full = 12;   // later passes use half of the change, so that an alternation between two states converges
-constexpr int k_passes_repeated = 20;  // later passes use bounds as functions of the wrenches (the plain repetition diverges)
-constexpr int k_passes_static = 6;     // later passes do not return the static coefficient to an element that has slipped
+constexpr int k_max_mode_passes = 12; // if contact modes have not converged after this many passes, the step is halved
+// Limit of passes for the normal forces at the end of the step; without convergence the step is halved.
+constexpr int k_max_force_passes = 60;
+constexpr int k_passes_in_full = 12;  // later passes apply half of the change, so that an alternation between two states converges
+constexpr int k_passes_repeated = 20; // later passes linearise the bounds as functions of the wrenches, because plain iteration diverges
+constexpr int k_passes_static = 6;    // later passes keep the kinetic coefficient of elements that have slipped
 constexpr int k_max_halvings = 20;
-// Wrenches are converged if they change by less than this relative to those of the element; far below the error of the method.
+// Wrenches are converged if each changes by less than this, relative to its element's wrench; far below the error of the method.
 constexpr double k_settled = 1e-8;
-// Smaller relative changes that no longer decrease are tolerated. The wrenches are then those of a step whose normal forces and velocities
-// differ from the true ones by this relative amount.
+// Larger changes, up to this, are accepted if they no longer decrease. The wrenches are then those of a step whose normal forces and
+// velocities differ from the true ones by this relative amount.
 constexpr double k_tolerated = 1e-6;
-// A step shorter than this fraction of the longest is only rounding. Residual velocities of earlier steps, 1e-8 of the change within a
-// step, would otherwise appear as forces a hundred times the real ones.
+// A step shorter than this fraction of the longest is treated as rounding. The residual velocities of earlier steps, 1e-8 of the change
+// within a step, would otherwise appear as forces a hundred times the real ones.
 constexpr double k_negligible = 1e-6;
 constexpr double k_roundings_of_time = 64.0;
-constexpr double k_whole = 1e-6; // relative to a part: a shorter remainder is added to it
-// Relative to the longest step. A slip that a part of this length does not show is 1e-6 of the curvature of a load within a step.
+constexpr double k_whole = 1e-6; // a remainder shorter than this fraction of a part is added to the part
+// Shortest part that is searched for hidden slips, relative to the longest step. A load of ordinary curvature deviates within shorter
+// parts by 1e-6 of its deviation within a step.
 constexpr double k_shortest_searched = 1e-3;
-constexpr double k_known = 1e-12; // relative to the scene's length: accuracy of positions, equal to that of the constraints
+constexpr double k_known = 1e-12; // accuracy of positions relative to the length of the scene, equal to that of the constraints
 
-// While it exists, rates use the means of force signals over [`from`, t].
+// During the lifetime of this object rates use the means of force signals over [`from`, t].
 class Means {
 public:
   Means(Dynamics& dynamics, double from) : dynamics_(dynamics) { dynamics.average_signals_from(from); }
@@ -42,7 +44,7 @@ private:
   Dynamics& dynamics_;
 };
 
-// Ends the run by next_mode() if a law is not valid any more, whatever the mode (a rope that has run onto its pulley).
+// Throws, by next_mode(), if a force law has left its range of validity in any mode (a rope that has run onto its pulley).
 void refuse_beyond_laws(const System& system, Dynamics& dynamics, const State& state) {
   for (std::size_t u = 0; u < system.units.size(); ++u) {
     const Unit& unit = system.units[u];
@@ -64,7 +66,7 @@ bool TimeStepping::is_rounding(double t0, double t1) const {
   return t1 - t0 <= std::max(rounding, k_negligible * longest_);
 }
 
-// In a step whose length is rounding no mode changes.
+// Advances a step whose length is only rounding; no mode changes.
 void TimeStepping::drift(Dynamics& dynamics, State& state, double t1) {
   const double h = t1 - state.t;
   dynamics.set_state(state);
@@ -79,7 +81,7 @@ void TimeStepping::step(Dynamics& dynamics, State& state, double t1, double tole
   residual_ = {};
   if (is_rounding(state.t, t1)) return drift(dynamics, state, t1);
   longest_ = std::max(longest_, t1 - state.t);
-  double part = t1 - state.t; // halved if impossible, doubled after success
+  double part = t1 - state.t; // length of a part: halved after a failure, doubled after success
   int halvings = 0;
   while (state.t < t1) {
     const double left = t1 - state.t;
@@ -127,12 +129,12 @@ void TimeStepping::fail(const Trouble& trouble, double t, double h) const {
 
 void TimeStepping::evaluate(Dynamics& dynamics, double t, const double* y) {
   dynamics.rates(time_of_loads(t), y, dy_.data());
-  (void)dynamics.snapshot(dy_.data()); // computes the motion of bodies that only friction refers to
+  (void)dynamics.snapshot(dy_.data()); // computes the motion of bodies to which only friction refers
 }
 
 // Computes the end of the step for the present wrenches, and projects it onto the constraints.
 void TimeStepping::move(Dynamics& dynamics, double t1, double tolerance) {
-  const int numbers = 2 * n_ + dynamics.inner_count(); // own states follow the motion without friction
+  const int numbers = 2 * n_ + dynamics.inner_count(); // includes own states, which follow the motion without friction
   std::copy(y0_.begin(), y0_.begin() + numbers + 2, y1_.begin());
   for (int i = 0; i < numbers; ++i) y1_[i] += free_[i];
   if (std::any_of(wrench_.begin(), wrench_.end(), [](double w) { return w != 0.0; })) {
@@ -146,7 +148,7 @@ void TimeStepping::move(Dynamics& dynamics, double t1, double tolerance) {
   evaluate(dynamics, t1, y1_.data());
 }
 
-// Solves friction for the normal forces and velocities of the end of the step, by repetition.
+// Iterates friction together with the normal forces and velocities at the end of the step.
 TimeStepping::Trouble TimeStepping::settle_forces(Dynamics& dynamics, double t1, double tolerance) {
   move(dynamics, t1, tolerance);
   double change = 0.0;
@@ -174,7 +176,7 @@ TimeStepping::Trouble TimeStepping::settle_forces(Dynamics& dynamics, double t1,
   return {"friction and the normal forces on which it depends", system_.frictions[parts_[worst].friction].element, change, " of its force"};
 }
 
-// Takes over the modes at the end of the step. Returns the first unit whose mode differs from that used in the step, or −1.
+// Sets the modes for the end of the step. Returns the first unit whose mode differs from that used in the step, or −1.
 int TimeStepping::changed_unit(Dynamics& dynamics, State& state) {
   int first = -1;
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
@@ -186,23 +188,23 @@ int TimeStepping::changed_unit(Dynamics& dynamics, State& state) {
   return first;
 }
 
-// Returns the first contact that is open at both ends of the step, but would have closed according to the rate at either end; −1 if there
-// is none. A fast body may have passed a plate that is thinner than the step's displacement. A real reversal from approach to separation
-// without a contact force needs another cause, which a part half as long shows. A penetration below the accuracy of positions is ignored.
+// Returns the first contact that is open at both ends of the step, but would have closed by linear extrapolation from either end; −1 if
+// there is none. A fast body may have passed a plate that is thinner than the step's displacement. If the body really reversed without
+// contact, another force did it, which a part of half the length resolves. A penetration below the accuracy of positions is ignored.
 int TimeStepping::passed_unit(const Dynamics& dynamics, const State& state, double h) const {
   const double known = k_known * system_.scale.length;
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];
     if (state.mode[u] != 0 || start_.mode[u] != 0) continue;
     for (int slot = unit.first_event; slot < unit.first_event + unit.event_count; ++slot)
-      if (start_event_value_[slot] + h * start_event_derivative_[slot] < -known && // false if a rate is not known
+      if (start_event_value_[slot] + h * start_event_derivative_[slot] < -known && // false for NaN: rate unknown
           dynamics.event_value()[slot] - h * dynamics.event_derivative()[slot] < -known)
         return static_cast<int>(u);
   }
   return -1;
 }
 
-// Makes the part from start_ to t1: result in y1_ and the modes of `state`.
+// Computes the part from start_ to t1. Results: y1_ and the modes in `state`.
 TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, double t1, double tolerance) {
   const double h = t1 - state.t;
   for (std::size_t f = 0; f < state.friction.size(); ++f)
@@ -248,8 +250,8 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
   return trouble;
 }
 
-// A force that is constant in a step does work by the mean of the velocities at its ends. This applies to loads and drives, whose impulse
-// is exact. Dissipation is that at the end of the step, where laws are satisfied.
+// Adds dissipation and work of the part. A force that is constant in a step does work with the mean of the velocities at its ends; this
+// applies to loads and drives, whose impulse is exact. Dissipation uses the power at the end of the step, where the laws are satisfied.
 void TimeStepping::book_power(Dynamics& dynamics, State& state, double h) {
   const int n = dynamics.dimension(), m = dynamics.coordinate_count();
   dynamics.rates(time_of_loads(state.t), y1_.data(), dy_.data());
@@ -262,7 +264,7 @@ void TimeStepping::book_power(Dynamics& dynamics, State& state, double h) {
   state.work += h * dy_[n - 1];
 }
 
-// Sets phase and anchor of each friction element, and the power at the end of the step.
+// Sets phase and anchor of each friction element, and adds the energy integrals of the part.
 void TimeStepping::finish_phases(Dynamics& dynamics, State& state, double h) {
   bool has_rejoined = false;
   for (const FrictionPart& part : parts_) {
@@ -287,7 +289,7 @@ void TimeStepping::finish_phases(Dynamics& dynamics, State& state, double h) {
     friction.sign = part.block.direction[0] > 0.0 ? 1 : -1;
     if (part.dimension == 3) element.aim(friction, rate);
   }
-  if (has_rejoined) dynamics.clear_layouts(); // cached layouts that merge the two bodies have their previous relative pose
+  if (has_rejoined) dynamics.clear_layouts(); // cached layouts that merge the two bodies still have their previous relative pose
   dynamics.set_state(state);
   dynamics.pack(state, y1_.data());
   book_power(dynamics, state, h);

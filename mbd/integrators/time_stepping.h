@@ -1,30 +1,30 @@
 // Time stepping after Moreau and Jean: impulses over a fixed step, with the laws satisfied at its end.
 //
 //   M (v₁ − v₀) = h (Q(q₁, v₁, t₁) + Jᵀλ₁ + Hᵀw),   q₁ = q₀ + h v₁,   J v₁ = prescribed rate,
-//   −H v₁ in the normal cone of K at w: each friction element can have any w in its convex set K, and slides only on the boundary of K, in
-//   the direction of maximum dissipation.
+//   −H v₁ in the normal cone of K at w: each friction element can have any w in its convex set K, and slides only on the boundary of K,
+//   in the direction of maximum dissipation.
 //
 // Forces that are signals enter by their means over the step, so that the impulse of a short pulse is exact. Signals used in other ways
 // (drives, parameters) enter by their value at the end of the step, and steps must resolve them (Moreau, Simulation).
 //
 // Springs, dampers and contacts are linearised at the start of the step (linearization.h) and treated implicitly, so that stiffness does
-// not limit the step. The set of pressed contacts is found by repeating the step until it agrees with its end. Friction is the convex
-// problem of friction_modes.h with velocities in place of accelerations, solved by block Gauss–Seidel iteration over the elements. Its
-// matrix, the change of H v₁ by w, includes the reactions of joints and drives. The velocities H v₁ without friction and the normal forces
-// belong to the end of the step on the constraints, and are found by repetition, too.
+// not limit the step. The step is repeated until the set of pressed contacts assumed in it agrees with the one at its end. Friction is
+// the convex problem of friction_modes.h with velocities in place of accelerations, solved by block Gauss–Seidel iteration over the
+// elements. Its matrix, the change of H v₁ by w, includes the reactions of joints and drives. The velocities H v₁ without friction, and
+// the normal forces, are those of the projected end of the step, and are iterated as well.
 //
 // The method is of first order. Events are not located: chattering, simultaneous impacts and jumps cost little more than smooth motion.
 // Vibrations of period T lose 2π²h/T of their amplitude per period (implicit Euler). Source: J. J. Moreau, Unilateral contact and dry
 // friction in finite freedom dynamics (CISM 302, 1988); M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235.
 //
-// The repetition diverges if friction changes its own normal force by more than itself (a ladder whose foot jams). There each element is
-// solved with its bound as a linear function of its wrench (Newton's method).
+// The plain iteration diverges if friction changes its own normal force by more than its own amount (a ladder whose foot jams). Each
+// element is then solved with its bound as a linear function of its wrench (Newton's method).
 //
-// A step is accepted only if friction and normal forces have converged and contact modes agree with its end. Otherwise it is halved, down
-// to a millionth. (Example: the damper of a closing contact makes the force jump; if the step is long compared with m/c neither mode is
-// consistent.) If halving does not help the run stops.
+// A step is accepted only if friction and normal forces have converged and contact modes agree with its end. Otherwise it is halved,
+// down to a millionth. (Example: the damper of a closing contact makes the force jump; if the step is long compared with m/c neither
+// mode is consistent.) If halving does not help the run stops.
 //
-// A friction element that sticks at the end of a step may have slipped within it, because means of loads and the clamping pressure at the
+// A friction element that sticks at the end of a step may have slipped within it, because mean loads and the clamping pressure at the
 // end do not show peaks. Such steps are halved, too (inner_slips.cpp).
 #pragma once
 
@@ -46,39 +46,40 @@ public:
   /// Called for each part of a step with the states at its ends.
   using PartObserver = std::function<void(const State& before, const State& after)>;
 
-  /// Advances `state` to the time t1: motion, contact modes, friction phases, anchors, and the integrals of power. `dynamics` is left with
-  /// `state` set. Constraints are satisfied to `tolerance`. If the step is only rounding in length, modes do not change. Throws
-  /// NumericalFailure if a part of the step is impossible; `state` is then that before this part.
+  /// Advances `state` to the time t1, s: motion, contact modes, friction phases, anchors, and the integrals of power. `dynamics` is left
+  /// set to `state`. Constraints are satisfied to `tolerance`, m, rad. If the length of the step is only rounding, modes do not change.
+  /// Throws NumericalFailure if a part of the step cannot be made; `state` is then that before this part.
   void step(Dynamics& dynamics, State& state, double t1, double tolerance, const PartObserver& observe = {});
 
-  /// Stops time at `t` for loads, drives and clamping pressures in all following steps (settling.h).
+  /// Evaluates loads, drives and clamping pressures at the fixed time `t`, s, in all following steps (settling.h).
   void hold_time(double t) { held_time_ = t; }
-  /// Returns the largest residuals before projection in the last step.
+  /// Returns the largest constraint residuals before projection in the last step.
   [[nodiscard]] const Residual& residual() const { return residual_; }
-  /// Returns the number of additional parts by halving, in all steps so far.
+  /// Returns the number of parts added by halving, in all steps so far.
   [[nodiscard]] long extra_parts() const { return extra_parts_; }
 
 private:
   /// A friction element that may carry a load, in the present part of a step.
   struct FrictionPart {
     int friction = 0, first = 0, dimension = 0; ///< first: index of its first row
-    bool has_slid = false;                      ///< it slid at the end of the previous step
-    bool is_kinetic = false;                    ///< the kinetic coefficient applies
-    bool is_returned = false;                   ///< it has got back its static coefficient in this step
-    bool is_loaded = false;                     ///< its admissible set is more than zero
+    bool has_slid = false;                      ///< the element slid at the end of the previous step
+    bool is_kinetic = false;                    ///< the kinetic coefficient is used
+    bool is_returned = false;                   ///< the element has got back its static coefficient in this step
+    bool is_loaded = false;                     ///< the admissible set of wrenches is larger than {0}
     bool is_driven = false;                     ///< in some direction joints and drives alone determine the velocity
-    Mat3 mobility = Mat3::Zero();               ///< if driven: its own block of the mobility, zero in these directions
-    Mat3 free = Mat3::Identity();               ///< projection onto the other directions
-    double noise = 0.0;                         ///< velocity in these directions that counts as rest
-    double own[9] = {};                         ///< compliance of its own rows, dimension × dimension
-    double bound = 0.0, kinetic_share = 1.0;    ///< dimension 1: bound at the wrench bound_at_; ratio of the kinetic to the static bound
+    Mat3 mobility = Mat3::Zero();               ///< if driven: the element's block of the mobility, zero in the driven directions
+    Mat3 free = Mat3::Identity();               ///< if driven: projection onto the directions that are not driven
+    double noise = 0.0;                         ///< velocity in driven directions that counts as rest, m/s or rad/s
+    double own[9] = {};                         ///< compliance of the element's rows, dimension × dimension
+    /// For dimension 1: bound, N, at the wrench bound_at_; ratio of the kinetic to the static bound.
+    double bound = 0.0, kinetic_share = 1.0;
     BlockSolution block;
 
-    [[nodiscard]] double compliance(int i) const { return own[i * (dimension + 1)]; } ///< along its own row i
+    [[nodiscard]] double compliance(int i) const { return own[i * (dimension + 1)]; } ///< diagonal entry for row i
   };
-  /// Reason why a step is impossible.
+  /// Reason why a step cannot be made.
   struct Trouble {
-    const char* what = nullptr; ///< null: it is possible
+    const char* what = nullptr; ///< text; null: the step is possible
     int element = -1;
     double residual = 0.0;
     const char* unit = "";
@@ -86,9 +87,9 @@ private:
 
   /// A sticking element at the end of a part.
   struct Sticking {
-    double t = -1.0;      ///< time of that end, s; negative: it does not stick
-    double usage = 0.0;   ///< utilisation: share of what it can carry
-    double change = 0.0;  ///< change of the utilisation since the previous part; 1 if unknown
+    double t = -1.0;      ///< end of the part, s; negative: the element does not stick
+    double usage = 0.0;   ///< utilisation: load relative to the capacity
+    double change = 0.0;  ///< change of the utilisation from the previous part; 1 if unknown
     bool is_near = false; ///< the utilisation may have reached one within the part
   };
   static constexpr int k_glances = 3;
@@ -106,11 +107,11 @@ private:
   [[nodiscard]] int passed_unit(const Dynamics& dynamics, const State& state, double h) const;
   void finish_phases(Dynamics& dynamics, State& state, double h);
   void book_power(Dynamics& dynamics, State& state, double h);
-  // inner_slips.cpp
+  // defined in inner_slips.cpp
   [[nodiscard]] bool note_sticking(Dynamics& dynamics, double t1);
   [[nodiscard]] bool slips_inside(Dynamics& dynamics, double t1, double tolerance);
   [[nodiscard]] double usage_of(const Evaluation& e, const FrictionPart& part) const;
-  // time_stepping_friction.cpp
+  // defined in time_stepping_friction.cpp
   void collect_friction(Dynamics& dynamics, State& state);
   [[nodiscard]] bool has_held(const FrictionState& friction, int f) const;
   void load_row(Dynamics& dynamics, const RowSpec& spec, ForceRow& row) const;
@@ -128,7 +129,7 @@ private:
   [[nodiscard]] double size_of(const FrictionPart& part, const double* wrench) const;
   [[nodiscard]] double largest_size(const Evaluation& e) const;
   void hold_together();
-  /// Marks the rows of the elements that can hold and that `holds` selects.
+  /// Sets is_held_ for the rows of the elements that `holds` selects. Driven elements are excluded.
   template <class Holds> void hold(const Holds& holds) {
     for (const FrictionPart& part : parts_)
       std::fill_n(is_held_.begin() + part.first, part.dimension, !part.is_driven && holds(part) ? 1 : 0);
@@ -140,7 +141,7 @@ private:
   [[nodiscard]] bool bears(const Evaluation& e, double share) const;
   [[nodiscard]] double effect_of_others(const FrictionPart& part) const;
   void stop_at_rest(double change);
-  // time_stepping_modes.cpp
+  // defined in time_stepping_modes.cpp
   [[nodiscard]] bool slid_before(int f) const;
   [[nodiscard]] Trouble balance_friction(Dynamics& dynamics, bool keeps_kinetic);
   [[nodiscard]] bool turns_round(const FrictionPart& part) const;
@@ -157,28 +158,29 @@ private:
   StageSystem stages_;
   Residual residual_;
   State start_;
-  std::vector<double> start_event_value_, start_event_derivative_; ///< at the start of the part being made
+  std::vector<double> start_event_value_, start_event_derivative_; ///< event functions and their rates at the start of the present part
   double longest_ = 0.0;                                           ///< longest step so far, s
   long extra_parts_ = 0;
   std::vector<FrictionPart> parts_;
   int n_ = 0, rows_ = 0;
   std::vector<double> y0_, y1_, dy_, right_, free_, probe_;
-  std::vector<ForceRow> force_rows_; ///< of the friction rows
+  std::vector<ForceRow> force_rows_; ///< gradients of the friction rows
   RowCompliance compliance_;
-  std::vector<double> response_; ///< 2n: change of the state by forces along the rows
-  std::vector<double> rate_;     ///< per row: rate at the end without friction
+  std::vector<double> response_; ///< change of q and v by the forces along the rows
+  std::vector<double> rate_;     ///< per row: rate at the end of the step without friction, m/s or rad/s
   std::vector<double> wrench_, before_,
-      last_;                                                    ///< per row: now, before the last repetition, before the last sweep
-  bool is_coupled_ = false;                                     ///< bounds are functions of the wrenches
-  std::vector<double> bound_at_, bound_by_;                     ///< per row: wrench at the linearisation; rows × rows: ∂bound/∂wrench
-  std::vector<char> is_held_;                                   ///< per row: solved together with others by hold_rows()
-  std::vector<char> tried_;                                     ///< for each set of modes tried, per part: kinetic or not
-  std::vector<double> overload_;                                ///< per part: fraction of its static set that it would need to stick
-  std::vector<double> together_, rest_, softness_;              ///< per row
-  std::vector<Sticking> sticking_, sticking_now_;               ///< per friction element: of the previous part, of the present one
-  std::vector<std::array<double, k_glances>> glance_usage_;     ///< per friction element
-  double held_time_ = std::numeric_limits<double>::quiet_NaN(); ///< s; NaN: time is not held
-  double glance_ = 0.0; ///< duration before the end of the part over which loads are averaged, s; 0: the whole part
+      last_; ///< per row, N or N m: present value; value before the last pass of settle_forces(); value before the last sweep
+  bool is_coupled_ = false;                 ///< bounds are linear functions of the wrenches (couple_bounds())
+  std::vector<double> bound_at_, bound_by_; ///< per row: wrench at which bounds were linearised; rows × rows: ∂bound/∂wrench
+  std::vector<char> is_held_;               ///< per row: solved simultaneously by hold_rows()
+  std::vector<char> tried_;                 ///< tried sets of coefficients, one after the other; per element: is the coefficient kinetic?
+  std::vector<double> overload_;            ///< per element: wrench needed to stick, relative to the static capacity
+  std::vector<double> together_, rest_, softness_; ///< per row: wrenches of hold_rows(); remaining rates; regularisation
+  std::vector<Sticking> sticking_, sticking_now_;  ///< per friction element, for the previous and the present part
+  /// Per friction element: utilisations at the probed positions (inner_slips.cpp).
+  std::vector<std::array<double, k_glances>> glance_usage_;
+  double held_time_ = std::numeric_limits<double>::quiet_NaN(); ///< fixed time of loads, s (hold_time()); NaN: none
+  double glance_ = 0.0; ///< averaging time of loads before the end of the part, s; 0: the whole part
 };
 
 } // namespace steplap

@@ -1,4 +1,4 @@
-// Friction in a time step: rows, their responses, and the wrenches within the admissible sets.
+// Friction in a time step: gradients and compliance of the rows, and the wrenches within the admissible sets.
 #include "mbd/base/portable_math.h"
 #include "mbd/integrators/time_stepping.h"
 #include "mbd/system/bounded_friction.h"
@@ -15,47 +15,47 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_sweeps = 2000;
-constexpr int k_joint_sweeps = 10;  // after each of the first sweeps all sticking elements are solved together,
-constexpr int k_sweeps_between = 8; // later, one sweep in this many is followed by an extrapolation of its change
+constexpr int k_joint_sweeps = 10;  // after each of the first sweeps all sticking elements are solved simultaneously
+constexpr int k_sweeps_between = 8; // later, after every eighth sweep its change is extrapolated
 constexpr double k_longest_stretch = 1e15;
 constexpr int k_bisections = 60;
-constexpr double k_settled = 1e-9; // relative change of an element's wrench; far below the error of the method
-// If no wrench changes by more than this in a sweep, the wrenches are the exact solution for velocities that differ by this relative
-// amount, which is also far below the error of the method.
+constexpr double k_settled = 1e-9; // convergence: relative change of an element's wrench; far below the error of the method
+// If no wrench changes by more than this in a sweep, the wrenches solve exactly a problem whose velocities differ by this relative
+// amount, also far below the error of the method.
 constexpr double k_tolerated = 1e-6;
-constexpr double k_small_share = 1e-3; // elements below this fraction of the largest wrench use that fraction as their scale
-// Ratio of the mobility with joints and drives to that without them. Smaller values are rounding errors of zero.
+constexpr double k_small_share = 1e-3; // smallest scale of relative changes, as fraction of the largest wrench
+// A direction is driven if its mobility with joints and drives, relative to that without them, is below this rounding error.
 constexpr double k_driven = 1e-12;
-// Where drives alone determine the velocity: rounding error of the velocity relative to the terms it is a difference of; below it the
-// element is at rest.
+// In a driven direction the velocity is a difference of larger terms. It counts as zero below this fraction of them.
 constexpr double k_rest = 1e-10;
 constexpr double k_tolerances_at_rest = 10.0;
-// Wrenches of elements that stick together: proximal point iterations with this regularisation. For dependent rows they converge to the
-// (weighted) least of all solutions.
+// Proximal-point iteration for the wrenches of elements that stick together: regularisation and number of steps. For dependent rows it
+// converges to the (weighted) least of all solutions.
 constexpr double k_proximal = 1e-10;
 constexpr int k_proximal_steps = 4;
-// Velocity that counts as rest, relative to the contribution of other elements: their wrenches are accurate to k_settled, or to this
-// multiple of the last change. An element on the boundary of its set without a velocity sticks, since many distributions of a load lead
-// there.
+// Velocity that counts as rest, relative to the contribution of the other elements' wrenches: at least k_rest_of_others, and
+// k_changes_at_rest times the last change of the wrenches. An element on the boundary of its set with such a velocity sticks, because a
+// load can be distributed in many ways, and some of them reach the boundary.
 constexpr double k_unsymmetric = 10.0; // allowance for springs and dampers that make the compliance unsymmetric
 constexpr double k_rest_of_others = 1e-7, k_changes_at_rest = 10.0;
-// Change of a wrench for computing the derivatives of bounds, relative to the element's capacity. If it is too large, it is reduced by the
-// factor k_shorter, up to k_probes times.
+// Change of a wrench for finite differences of bounds, relative to the element's capacity. If a bound becomes zero the change is reduced
+// by the factor k_shorter, up to k_probes times.
 constexpr double k_probe = 1e-2, k_shorter = 1e-2;
 constexpr int k_probes = 6;
-constexpr int k_sets_expected = 8;   // capacity reserved for the sets of modes tried in a step
-constexpr double k_rounding = 1e-14; // relative residual that further proximal iterations do not reduce
-constexpr double k_held = 1e-6;      // relative residual of the velocities below which sticking together is possible
+constexpr int k_sets_expected = 8;   // capacity reserved for the sets of coefficients tried in a step
+constexpr double k_rounding = 1e-14; // relative residual below which proximal iterations end
+constexpr double k_held = 1e-6;      // relative residual of the velocities below which the elements can stick together
 
 } // namespace
 
-// Returns true if the element stuck before this step at the same contact point. Its anchor is then kept, with all that the element has
-// computed for it.
+// Returns true if the element already stuck before this step, at the same contact point. Its anchor and the data that the element has
+// cached for it are then kept.
 bool TimeStepping::has_held(const FrictionState& friction, int f) const {
   return start_.friction[f].phase == FrictionPhase::stick && start_.friction[f].foot == friction.foot;
 }
 
-// Collects the elements with a nonzero admissible set, anchored at the present position. Their rows are forces here, not constraints.
+// Collects the elements that may act in this part, with their anchors at the present position. Their rows carry forces here and are not
+// constraints.
 void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
   parts_.clear();
   rows_ = 0;
@@ -63,7 +63,7 @@ void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
     const FrictionElement& element = *system_.frictions[f].friction;
     FrictionState& friction = state.friction[f];
     if (friction.phase == FrictionPhase::apart || element.never_slips()) continue;
-    FrictionState before = friction; // a joint that sticks cannot separate, so the phase matters
+    FrictionState before = friction; // phase at the start of the part: a joint that sticks cannot separate
     before.phase = start_.friction[f].phase;
     if (element.contact_point_event(dynamics.evaluation(), before) < 0.0) element.switch_contact_point(dynamics.evaluation(), friction);
     if (friction.phase == FrictionPhase::apart) continue;
@@ -91,7 +91,7 @@ void TimeStepping::load_row(Dynamics& dynamics, const RowSpec& spec, ForceRow& r
   const int body[2] = {spec.a, spec.b};
   row.count = 0;
   const bool is_swapped = layout.placements[spec.b].cluster < layout.placements[spec.a].cluster;
-  for (const int side : {is_swapped ? 1 : 0, is_swapped ? 0 : 1}) { // in the order of coordinates
+  for (const int side : {is_swapped ? 1 : 0, is_swapped ? 0 : 1}) { // clusters in ascending order, so that coordinates are ascending
     const int cluster = layout.placements[body[side]].cluster;
     if (cluster < 0) continue;
     const Motion<double>& k = motion[layout.clusters[cluster].motion];
@@ -129,16 +129,16 @@ void TimeStepping::respond(Dynamics& dynamics, double h) {
       for (int j = 0; j < part.dimension; ++j) part.own[i * part.dimension + j] = compliance_.between(part.first + i, part.first + j);
     find_driven(part, h);
   }
-  if (!is_larger) return; // else allocates the memory of hold_rows(), which may be needed for the first time late in a run
+  if (!is_larger) return; // otherwise allocates the memory of hold_rows() now, since its first use may be late in a run
   hold([](const FrictionPart&) { return true; });
   (void)factor_held(k_proximal);
 }
 
-// Finds the directions in which joints and drives leave no mobility, so that no wrench changes the velocity.
+// Finds the directions in which joints and drives leave no mobility, so that wrenches cannot change the velocity.
 void TimeStepping::find_driven(FrictionPart& part, double h) {
   const std::vector<double>& w = linearization_.inverse_mass();
   Mat3 scaled = Mat3::Identity();
-  Vec3 scale = Vec3::Ones(); // mobility of the two bodies without joints
+  Vec3 scale = Vec3::Ones(); // square root of the mobility of the two bodies without joints
   for (int i = 0; i < part.dimension; ++i) {
     const ForceRow& row = force_rows_[part.first + i];
     double own = 0.0;
@@ -166,7 +166,7 @@ void TimeStepping::find_driven(FrictionPart& part, double h) {
   part.free = scale.asDiagonal() * range * scale.cwiseInverse().asDiagonal();
 }
 
-// Computes the rates of the rows without friction: those at the projected end of the step minus the responses to the wrenches.
+// Computes the rates of the rows without friction: the rates at the projected end of the step minus the contribution of the wrenches.
 void TimeStepping::free_rates(Dynamics& dynamics, double tolerance) {
   const Motion<double>* const motion = dynamics.motion().data();
   compliance_.apply(wrench_);
@@ -183,7 +183,7 @@ void TimeStepping::free_rates(Dynamics& dynamics, double tolerance) {
   }
 }
 
-// Returns the bound of a one-dimensional element at the evaluation `e`.
+// Returns the bound, N or N m, of a one-dimensional element at the evaluation `e`.
 double TimeStepping::bound_of(const Evaluation& e, const FrictionPart& part, bool is_kinetic) const {
   const FrictionElement& element = *system_.frictions[part.friction].friction;
   const FrictionState& friction = e.friction[part.friction];
@@ -191,8 +191,8 @@ double TimeStepping::bound_of(const Evaluation& e, const FrictionPart& part, boo
   return system_.frictions[part.friction].bounded->bounds(e, friction, is_kinetic).high;
 }
 
-// Linearises bounds as functions of the wrenches at their present values. Normal forces end at zero, where they no longer depend on
-// wrenches: an element whose wrench has reduced its own normal force to zero starts again with zero wrench.
+// Linearises the bounds as functions of the wrenches about their present values. Where the normal force has become zero, bounds no
+// longer depend on wrenches; an element that has reduced its own normal force to zero therefore starts again from zero wrench.
 void TimeStepping::couple_bounds(Dynamics& dynamics, double t1, double tolerance) {
   const bool is_first = !is_coupled_;
   is_coupled_ = true;
@@ -201,7 +201,7 @@ void TimeStepping::couple_bounds(Dynamics& dynamics, double t1, double tolerance
     double& wrench = wrench_[part.first];
     if (part.dimension != 1 || wrench == 0.0) continue;
     if (!is_first && bound_of(dynamics.evaluation(), part, false) > 0.0) continue;
-    wrench = 0.0; // the repetitions so far may have led to any value
+    wrench = 0.0; // at the first call every wrench is reset, because the diverging passes before may have led anywhere
     is_moved = true;
   }
   if (is_moved) move(dynamics, t1, tolerance);
@@ -217,7 +217,8 @@ void TimeStepping::couple_bounds(Dynamics& dynamics, double t1, double tolerance
   evaluate(dynamics, t1, y1_.data());
 }
 
-// Computes the derivatives of all bounds by a wrench of element `by`, as a difference small enough that no bound becomes zero.
+// Computes the derivatives of all bounds with respect to the wrench of element `by`, by a difference small enough that no bound becomes
+// zero.
 void TimeStepping::find_slope(Dynamics& dynamics, double t1, const FrictionPart& by) {
   double size = k_probe * by.bound;
   rest_.assign(rows_, 0.0);
@@ -239,8 +240,9 @@ void TimeStepping::find_slope(Dynamics& dynamics, double t1, const FrictionPart&
   }
 }
 
-// Solves a one-dimensional element with bound B(w) = bound + slope w: it sticks if |w| ≤ B(w) stops it, otherwise it slides in either
-// direction with w = ∓B(w) against the rate a w + b. If several solutions exist (Painlevé's paradox) it sticks.
+// Solves a one-dimensional element with the linear bound B(w) = bound + slope w and the rate a w + b. It sticks if the wrench that stops
+// it has |w| ≤ B(w). Otherwise it slides in either direction, with w = ∓B(w) against the rate. If several solutions exist (Painlevé's
+// paradox) it sticks.
 BlockSolution TimeStepping::solve_coupled(const FrictionPart& part, double a, double b) const {
   const std::size_t row = part.first;
   const double* const by = &bound_by_[row * rows_];
@@ -269,7 +271,7 @@ BlockSolution TimeStepping::solve_coupled(const FrictionPart& part, double a, do
   return block;
 }
 
-// Solves one element for the present wrenches of the others, which act in compliance_.
+// Solves one element for the present wrenches of the others, which compliance_ contains.
 BlockSolution TimeStepping::solve_part(const Evaluation& e, const FrictionPart& part) const {
   const FrictionElement& element = *system_.frictions[part.friction].friction;
   const FrictionState& friction = e.friction[part.friction];
@@ -281,8 +283,8 @@ BlockSolution TimeStepping::solve_part(const Evaluation& e, const FrictionPart& 
     for (int j = 0; j < d; ++j) b[i] -= a[i * d + j] * wrench_[part.first + j];
   }
   if (part.is_driven && d == 1) {
-    if (std::abs(b[0]) <= part.noise) return {}; // the wrench is undetermined, as the drive carries it: zero
-    a[0] = 1e-30 * std::abs(b[0]);               // wrenches have almost no effect: it slides
+    if (std::abs(b[0]) <= part.noise) return {}; // at rest by its drive: the wrench is undetermined and set to zero
+    a[0] = 1e-30 * std::abs(b[0]);               // tiny mobility: the solution is sliding
   } else if (part.is_driven) {
     Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(a);
     Eigen::Map<Vec3> rate(b);
@@ -294,7 +296,8 @@ BlockSolution TimeStepping::solve_part(const Evaluation& e, const FrictionPart& 
   return element.solve_block(e, friction, a, b, part.is_kinetic);
 }
 
-// Returns a size that is comparable for forces and moments: the square root of the energy that the wrench alone would give.
+// Returns the magnitude of a wrench in units common to forces and moments: the square root of the energy that the wrench alone would
+// cause.
 double TimeStepping::size_of(const FrictionPart& part, const double* wrench) const {
   double size = 0.0;
   for (int i = 0; i < part.dimension; ++i) {
@@ -303,8 +306,8 @@ double TimeStepping::size_of(const FrictionPart& part, const double* wrench) con
   return size;
 }
 
-// Returns the largest wrench, or the bound of a one-dimensional element if that is larger. Otherwise the zero friction force of a freely
-// rolling wheel would never converge, because its rounding errors are large relative to it.
+// Returns the largest wrench or bound of a one-dimensional element, as size_of(). Without the bounds the zero friction force of a freely
+// rolling wheel would never converge, because its changes would be compared with its own rounding error.
 double TimeStepping::largest_size(const Evaluation& e) const {
   double size = 0.0;
   for (const FrictionPart& part : parts_) {
@@ -315,7 +318,7 @@ double TimeStepping::largest_size(const Evaluation& e) const {
   return size;
 }
 
-// Returns the change of an element's wrench relative to its own size or to a small fraction of the largest wrench.
+// Returns the change of an element's wrench relative to its own magnitude or to a small fraction of `size`, the largest one.
 double TimeStepping::change_of(const FrictionPart& part, const double* before, double size) const {
   double change = 0.0;
   for (int i = 0; i < part.dimension; ++i) {
@@ -326,7 +329,7 @@ double TimeStepping::change_of(const FrictionPart& part, const double* before, d
   return change > 0.0 || std::isnan(change) ? change / own : 0.0;
 }
 
-// Solves each element once. Returns the largest change; `worst` is its element.
+// Solves each element once. Returns the largest relative change of a wrench; `worst` is the friction element with this change.
 double TimeStepping::sweep(Dynamics& dynamics, int& worst) {
   const Evaluation& e = dynamics.evaluation();
   last_ = wrench_;
@@ -353,23 +356,23 @@ double TimeStepping::sweep(Dynamics& dynamics, int& worst) {
   return largest;
 }
 
-// Solves for the wrenches of all sticking elements together, with those of slipping ones fixed. If the set of sticking elements is right,
-// the next sweep changes nothing. If no wrenches can stop all of them, nothing is changed.
+// Solves for the wrenches of all sticking elements simultaneously, with those of slipping elements fixed. If the set of sticking
+// elements is right, the next sweep changes nothing. If no wrenches can stop all of them, wrench_ is unchanged.
 void TimeStepping::hold_together() {
   hold([](const FrictionPart& part) { return part.block.sticks; });
   if (hold_rows()) wrench_ = together_;
 }
 
-// Computes the wrenches together_ that stop the rows held, the least ones if there are many; other rows keep theirs. Returns false if there
-// are none.
+// Computes the wrenches together_ that stop the held rows (the least ones if they are not unique); other rows keep theirs. Returns false
+// if no wrenches do.
 bool TimeStepping::hold_rows() { return factor_held(k_proximal) && solve_held(k_proximal_steps) <= k_held; }
 
-// Factorises for the rows held, with their compliance increased by the fraction `proximal`. Returns false if no row is held, or if the
-// matrix is singular.
+// Factorises the system of the held rows, with their compliance increased by the fraction `proximal`. Returns false if no row is held,
+// or if the matrix is singular.
 bool TimeStepping::factor_held(double proximal) {
   together_ = wrench_;
   if (std::find(is_held_.begin(), is_held_.end(), 1) == is_held_.end()) return false;
-  bool is_new = false; // the softness tells which rows are held; it is zero while there are no factors for this stage system
+  bool is_new = false; // softness_ differs for held and free rows, so it shows whether the factors are valid; it is zero without factors
   for (const FrictionPart& part : parts_)
     for (int i = 0; i < part.dimension; ++i) {
       const int r = part.first + i;
@@ -383,8 +386,8 @@ bool TimeStepping::factor_held(double proximal) {
   return false;
 }
 
-// Computes the wrenches together_ by the given number of proximal iterations with the factors of factor_held(). Returns the remaining
-// velocity of the rows relative to that without these wrenches.
+// Computes the wrenches together_ by up to `steps` proximal iterations with the factors of factor_held(). Returns the remaining velocity
+// of the held rows relative to that without their wrenches.
 double TimeStepping::solve_held(int steps) {
   double wanted = 0.0, left = 0.0;
   for (int r = 0; r < rows_; ++r)
@@ -406,7 +409,7 @@ double TimeStepping::solve_held(int steps) {
   return wanted > 0.0 ? left / wanted : 0.0;
 }
 
-// Returns true if all elements can carry the wrenches before the last sweep plus `share` of its change.
+// Returns true if the wrenches before the last sweep plus `share` of its change are admissible for all elements.
 bool TimeStepping::bears(const Evaluation& e, double share) const {
   for (const FrictionPart& part : parts_) {
     const FrictionElement& element = *system_.frictions[part.friction].friction;
@@ -419,7 +422,7 @@ bool TimeStepping::bears(const Evaluation& e, double share) const {
       is_moved = is_moved || change != 0.0;
     }
     if (!is_moved) continue;
-    for (int i = 0; i < d; ++i) { // the nearest admissible wrench is w itself
+    for (int i = 0; i < d; ++i) { // unit compliance: the solution is the admissible wrench nearest to w, which is w itself if admissible
       a[i * d + i] = part.compliance(i);
       b[i] = -a[i * d + i] * w[i];
     }
@@ -428,9 +431,9 @@ bool TimeStepping::bears(const Evaluation& e, double share) const {
   return true;
 }
 
-// Extrapolates the change of the last sweep as far as the energy decreases and all wrenches remain admissible. With nearly dependent rows
-// (two feet of a slightly rotated box) the energy is almost constant for some exchange of load between them, and plain sweeps converge very
-// slowly.
+// Extrapolates the change of the last sweep as far as the energy decreases and all wrenches remain admissible. With nearly dependent
+// rows (two feet of a slightly rotated box) the energy hardly changes when load moves from one to the other, and plain sweeps converge
+// very slowly.
 void TimeStepping::stretch(const Evaluation& e) {
   double slope = 0.0, curvature = 0.0;
   const auto add_power = [&](const std::vector<double>& wrench, double sign) {
@@ -455,7 +458,7 @@ void TimeStepping::stretch(const Evaluation& e) {
   for (int i = 0; i < rows_; ++i) wrench_[i] = last_[i] + share * (wrench_[i] - last_[i]);
 }
 
-// Returns the sum of the sizes of what the wrenches of all other elements add to the rate of an element.
+// Returns the sum of the magnitudes of the contributions of all other elements to the rate of an element.
 double TimeStepping::effect_of_others(const FrictionPart& part) const {
   double effect = 0.0;
   for (int i = 0; i < part.dimension; ++i) {
@@ -468,11 +471,13 @@ double TimeStepping::effect_of_others(const FrictionPart& part) const {
   return effect;
 }
 
-// Makes elements stick that are on the boundary of their set with a velocity no larger than the remaining changes of the others.
+// Sets elements to sticking that are on the boundary of their set with a velocity no larger than the effect of the remaining changes of
+// the others.
 void TimeStepping::stop_at_rest(double change) {
   const double share = std::max(k_rest_of_others, k_changes_at_rest * change);
   compliance_.apply(wrench_);
-  // |C_ij| ≤ √(C_ii C_jj) if C is symmetric, so that this limits the effect of others on any element. C is nearly so.
+  // |C_ij| ≤ √(C_ii C_jj) for symmetric C, which limits the effect of others on any element. k_unsymmetric allows for a C that is only
+  // nearly symmetric.
   double most = 0.0;
   for (const FrictionPart& part : parts_)
     for (int i = 0; i < part.dimension; ++i) most += std::abs(wrench_[part.first + i]) * std::sqrt(std::max(0.0, part.compliance(i)));
@@ -488,8 +493,7 @@ void TimeStepping::stop_at_rest(double change) {
   }
 }
 
-// Block Gauss–Seidel iteration: solves each element for the present wrenches of the others, with the present choice of static or kinetic
-// coefficients.
+// Block Gauss–Seidel iteration: solves each element for the present wrenches of the others, with fixed static or kinetic coefficients.
 TimeStepping::Trouble TimeStepping::settle_wrenches(Dynamics& dynamics, double& change) {
   int worst = 0;
   for (int i = 0; i < k_max_sweeps; ++i) {

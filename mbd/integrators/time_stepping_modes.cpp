@@ -1,19 +1,19 @@
 // Choice between static and kinetic coefficient for each friction element in a time step.
 //
-// With kinetic friction below static friction the problem of a step is not convex, and does not define the onset of slip. An element that
-// slid at the end of the last step keeps its kinetic coefficient; with the static one it would load its neighbours by a force that it does
-// not have. All others start with the static coefficient. Then, until nothing changes:
+// If kinetic friction is below static friction, the problem of a step is not convex and does not define the onset of slip. An element
+// that slid at the end of the last step keeps its kinetic coefficient; with the static one it would load its neighbours by a force that
+// it cannot have. All others start with the static coefficient. Then, until nothing changes:
 //
 //   1. The convex problem is solved for the present coefficients.
 //   2. An element that would slide in the opposite direction has passed through rest: it gets its static coefficient back.
 //   3. An element with the kinetic coefficient that is at rest and within its static set gets its static coefficient back.
-//   4. Of the elements that slide with the static coefficient, the most overloaded one, and those equal to it, get the kinetic coefficient.
-//      The overload is the wrench needed to stick, while all elements that may stick do so, relative to the capacity. Under proportionally
-//      growing loads this element starts to slide first. If the elements that may stick hold it in any case (two friction elements on
+//   4. Of the elements that slide with the static coefficient, the most overloaded one, and those equal to it, get the kinetic
+//      coefficient. The overload is the wrench needed to stick, while all elements that may stick do so, relative to the capacity. Under
+//      proportionally growing loads this element starts to slide first. If the others alone keep it at rest (two friction elements on
 //      one body), it can slide only together with them: then all that slide get the kinetic coefficient.
 //
-// Each element gets its static coefficient back at most once in a step, and no set of coefficients is tried twice: once one would be,
-// elements only change to kinetic. The number of rounds is therefore at most about twice the number of elements.
+// Each element gets its static coefficient back at most once in a step, and no set of coefficients is tried twice: from the first
+// repetition on, elements only change to kinetic. The number of rounds is therefore at most about twice the number of elements.
 #include "mbd/integrators/time_stepping.h"
 #include "mbd/system/bounded_friction.h"
 
@@ -26,15 +26,15 @@ namespace steplap {
 namespace {
 
 constexpr double k_tie = 1e-9; // relative tolerance for equal overloads, far above the rounding errors of identical elements
-// Wrenches are accurate to the last change of the sweeps. Overloads that differ by at most this multiple of it are equal, too.
+// Overloads are also equal if they differ by at most this multiple of the last change of the sweeps, to which wrenches are accurate.
 constexpr double k_changes_in_tie = 10.0;
-// Regularisation for the case that not all elements can stick, for example between parts that drives move apart. The loads are then those
-// of springs with equal stiffness relative to the mobilities; rounding errors are 1e-10 of them.
+// Regularisation if not all elements can stick, for example between parts that drives move apart. The wrenches are then those of springs
+// with equal stiffness relative to the mobilities; their relative rounding errors are about 1e-10.
 constexpr double k_soft = 1e-6;
-// A row is at rest if its velocity is below this fraction of the terms that add up to it. Velocities are accurate to 1e-6 at worst.
+// A row is at rest if its velocity is below this fraction of the terms of which it is the sum. Velocities are accurate to 1e-6 at worst.
 constexpr double k_rest_by_others = 1e-6;
 
-// Returns true if the static and the kinetic bounds of a one-dimensional element are the same.
+// Returns true if a one-dimensional element has equal static and kinetic bounds.
 bool has_one_set(const BoundedFriction& element, const Evaluation& e, const FrictionState& friction) {
   const WrenchBounds at_rest = element.bounds(e, friction, false), sliding = element.bounds(e, friction, true);
   return at_rest.low == sliding.low && at_rest.high == sliding.high;
@@ -42,7 +42,7 @@ bool has_one_set(const BoundedFriction& element, const Evaluation& e, const Fric
 
 } // namespace
 
-// A step of zero length starts at rest, whatever the phase at the end of the last step.
+// With fixed time (hold_time()) every step starts at rest, whatever the phase at the end of the last step.
 bool TimeStepping::slid_before(int f) const { return start_.friction[f].phase == FrictionPhase::slip && std::isnan(held_time_); }
 
 // `keeps_kinetic`: continues with the coefficients of the last call; elements then only change to kinetic.
@@ -73,8 +73,8 @@ TimeStepping::Trouble TimeStepping::balance_friction(Dynamics& dynamics, bool ke
   }
 }
 
-// Returns true if the element slides opposite to its direction at the end of the last step. In three dimensions a slip changes its
-// direction without coming to rest; there the criterion is whether the friction would push along the former slip.
+// Returns true if the element slides opposite to its direction at the end of the last step. In three dimensions a slip can change its
+// direction without coming to rest; there the result is true if friction would push along the former slip.
 bool TimeStepping::turns_round(const FrictionPart& part) const {
   if (!part.has_slid || !part.is_kinetic || !part.is_loaded || part.block.sticks) return false;
   const FrictionState& before = start_.friction[part.friction];
@@ -94,7 +94,8 @@ bool TimeStepping::return_turned() {
   return is_any;
 }
 
-// The wrenches are admissible in the static sets, too, so they need not be solved again.
+// Returns static coefficients to elements at rest within their static set. Their wrenches are admissible in both sets, so they are not
+// solved again.
 void TimeStepping::return_stopped(const Evaluation& e) {
   for (FrictionPart& part : parts_) {
     if (!part.is_kinetic || part.is_returned || !part.is_loaded || !part.block.sticks) continue;
@@ -104,7 +105,8 @@ void TimeStepping::return_stopped(const Evaluation& e) {
   }
 }
 
-// Returns false if nothing slides with a static coefficient that differs from its kinetic one.
+// Gives kinetic coefficients to the most overloaded elements (step 4 above). Returns false if no element slides with a static
+// coefficient that differs from its kinetic one.
 bool TimeStepping::give_kinetic(const Evaluation& e, double change) {
   const auto slides = [](const FrictionPart& part) { return part.is_loaded && !part.is_kinetic && !part.block.sticks; };
   const auto would_change = [&](const FrictionPart& part) {
@@ -127,15 +129,15 @@ bool TimeStepping::give_kinetic(const Evaluation& e, double change) {
   }
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     FrictionPart& part = parts_[p];
-    // By rounding, an element just within its set may equal one just outside. If elements share a load in a statically indeterminate way,
-    // an overload above one does not imply sliding: others carry the rest.
+    // By rounding, an element just within its set may equal one just outside. If elements share a load in a statically indeterminate
+    // way, an overload above 1 does not imply sliding, because the others carry the rest.
     const bool equals_by_rounding = part.is_loaded && !part.is_kinetic && most <= 1.0 + tie && std::abs(overload_[p] - most) <= tie;
     if ((slides(part) && overload_[p] >= most * (1.0 - tie)) || equals_by_rounding) part.is_kinetic = true;
   }
   return true;
 }
 
-// Computes the overloads. They are infinite if drives determine the motion or the capacity is zero: such an element slides.
+// Computes the overloads. They are infinite, and the element slides, if drives determine its motion or its capacity is zero.
 void TimeStepping::find_overloads(const Evaluation& e) {
   overload_.assign(parts_.size(), 0.0);
   hold([](const FrictionPart& part) { return part.is_loaded && !part.is_kinetic; });
@@ -153,8 +155,8 @@ void TimeStepping::find_overloads(const Evaluation& e) {
   }
 }
 
-// Returns true if the element is at rest when all others with static coefficients stick. It cannot slide alone then, and the distribution
-// of the load is not unique.
+// Returns true if the element is at rest when all others with static coefficients stick: it cannot slide alone, and the distribution of
+// the load is not unique.
 bool TimeStepping::is_held_by_others(const FrictionPart& part) {
   hold([&](const FrictionPart& other) { return &other != &part && other.is_loaded && !other.is_kinetic; });
   if (part.is_driven || !hold_rows()) return false;

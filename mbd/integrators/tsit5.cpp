@@ -7,8 +7,9 @@ namespace steplap {
 
 namespace {
 
-// The dense output is of order 4 and has no error estimate. Near the end of a slip the friction direction depends on its velocity. With a
-// tenth of the usual error, 200 random slips (slip_ends_test.cpp) stay within 2 % of the capacity.
+// Factor on the permitted error of slip velocities. The dense output is of order 4 and has no error estimate, but near the end of a slip
+// the friction direction depends on its velocity. With this factor 200 random slips (slip_ends_test.cpp) stay within 2 % of the
+// capacity.
 constexpr double k_slip_care = 0.1;
 
 class Tsit5 final : public ExplicitPair {
@@ -26,7 +27,7 @@ public:
       const auto& d = tsit5::d[j];
       weight[j] = theta * (d[0] + theta * (d[1] + theta * (d[2] + theta * d[3])));
     }
-    // The displacement by projection is distributed over the step, so that the dense output agrees with the projected end.
+    // The displacement by projection is distributed smoothly over the step, so that the dense output ends at the projected state.
     const double blend = theta * theta * (3.0 - 2.0 * theta);
     for (int i = 0; i < n_; ++i) {
       double sum = 0.0;
@@ -39,7 +40,7 @@ public:
     double* const y = scratch_.data();
     combine<tsit5::a, 5, 5>(y0_.data(), h_, k_.data(), stride_, n_, y);
     for (int i = 0; i < n_; ++i) y[i] = y1_[i] - y[i];
-    return rate_of_stages(6, 5, y) / 3.5; // stable on the negative real axis for hρ up to 3.5
+    return rate_of_stages(6, 5, y) / 3.5; // tsit5 is stable on the negative real axis for hρ up to 3.5
   }
 
 protected:
@@ -51,7 +52,8 @@ protected:
     stage<a, 4>(dynamics, c[4]);
     stage<a, 5>(dynamics, c[5]);
     add_stages<a, 6, 6>(y1_.data());
-    // The error estimate contains the rates at the end. They are evaluated before projection, whose displacement is much smaller.
+    // The last stage, the rates at the end, belongs to the error estimate. It is evaluated before projection, which moves the state by
+    // much less than the error.
     dynamics.evaluate(Request::stage, t0_ + h_, y1_.data(), k(6));
     std::copy(y1_.begin(), y1_.begin() + n_, raw_.begin());
     sum_stages<e, 7>(scratch_.data());

@@ -7,17 +7,18 @@ namespace steplap {
 
 namespace {
 
-// Fraction of the interval after a knot: a step that ends within it counts as ending at the knot. Larger than k_reached of turn_table.cpp.
+// A step that ends within this fraction of the interval after a knot counts as ending at the knot. Larger than k_reached of
+// turn_table.cpp.
 constexpr double k_beyond_knot = 0.05;
 constexpr double k_shorter = 0.9; // safety factor for repeating a step that turned too far
-constexpr double k_whole = 1e-9;  // relative tolerance for an interval that is a whole number of parts
+constexpr double k_whole = 1e-9;  // relative tolerance when the remaining interval is divided by the step
 
-// Returns the time in which the angle `turn` is reached with `rate` and `acceleration`, both positive.
+// Returns the time, s, in which the angle `turn`, rad, is reached with `rate` and `acceleration`, both positive.
 double time_to(double turn, double rate, double acceleration) {
   return 2.0 * turn / (rate + std::sqrt(rate * rate + 2.0 * acceleration * turn));
 }
 
-// Returns the coordinate that is the angle of a cluster.
+// Returns the index of the coordinate that is the angle of a cluster.
 int angle_of(const Layout& layout, int cluster) {
   if (cluster < layout.absolute_count) return 3 * cluster + 2;
   const Mechanism& m = layout.mechanism_of_cluster(cluster);
@@ -60,10 +61,10 @@ double TurnLimit::shortened_by(const Turn& turn, const Layout& layout, const dou
     const double x = angle + knots.zero;
     const TurnKnots::Interval interval = knots.about(x, rate);
     const double left = rate > 0.0 ? interval.high - x : x - interval.low, part = (interval.high - interval.low) / division;
-    // Divides the interval up to the knot into equal steps of at most that length.
+    // Up to the knot equal steps are made, each no longer than this part.
     if (std::isfinite(left)) most = std::min(most, left / std::max(1.0, std::ceil(left / part - k_whole)));
   }
-  // An acceleration that would double the rate within such a step is a transient and is ignored; the rotation is checked at the end of the
+  // An acceleration that would double the rate within the step is a transient and is ignored; the rotation is checked at the end of the
   // step.
   const double even = most / std::abs(rate), growth = relative_turn(layout, turn, dy + layout.coordinate_count) * (rate > 0.0 ? 1.0 : -1.0);
   const bool is_steady = growth > 0.0 && growth * even < std::abs(rate);
@@ -90,7 +91,7 @@ double TurnLimit::kept_by(const Turn& turn, const Layout& layout, const double* 
     const TurnKnots::Interval interval = knots.about(x, turned);
     const double knot = turned > 0.0 ? interval.high : interval.low;
     if (!std::isfinite(knot)) continue;
-    const TurnKnots::Interval behind = knots.about(knot, turned); // this knot counts as reached
+    const TurnKnots::Interval behind = knots.about(knot, turned); // interval behind this knot
     const double width = std::isfinite(behind.high - behind.low) ? std::min(behind.high - behind.low, k_most) : k_most;
     most = std::min(most, std::abs(knot - x) + k_beyond_knot * width);
   }

@@ -1,7 +1,7 @@
 // Limit of the relative rotation of pairs of bodies within one step (mbd/system/turn_table.h).
 //
 // Before a step its length is limited by the relative angular velocities at its start, and by angular accelerations that increase them.
-// Afterwards the angles at both ends are checked. A step with too much rotation is repeated, shorter.
+// After the step the angles at both ends are compared. A step that rotated too far is repeated with a shorter length.
 #pragma once
 
 #include "mbd/dynamics/layout.h"
@@ -13,7 +13,7 @@
 
 namespace steplap {
 
-/// Limits of rotation for the bodies of one system, which must outlive it.
+/// Limits of rotation for the bodies of one system, which must outlive this object.
 class TurnLimit {
 public:
   /// Largest rotation of a pair in one step, rad.
@@ -21,14 +21,14 @@ public:
 
   explicit TurnLimit(const System& system);
 
-  /// Returns the longest step, at most `h`, that keeps the limit according to the rates at its start. `y` and `dy`: packed state and its
-  /// rate. With `division` > 1 (finer run) the limit and the intervals between knots are divided by it.
+  /// Returns the longest step, s, at most `h`, that keeps the limit according to the rates at its start. `y` and `dy`: packed state and
+  /// its rate. With `division` > 1 (finer run) the limit and the intervals between knots are divided by it.
   [[nodiscard]] double longest(const Layout& layout, const double* y, const double* dy, double h, int division) {
     limiting_ = nullptr;
     if (is_free(2.0 * division * h * fastest(layout, y + layout.coordinate_count), k_aim)) return h;
     return shortened(layout, y, dy, h, division);
   }
-  /// Returns the fraction of the step from y0 to y1 that keeps the limit; 1: all of it.
+  /// Returns the fraction of the step from y0 to y1 that keeps the limit; 1 for the whole step.
   [[nodiscard]] double kept(const Layout& layout, const double* y0, const double* y1) {
     limiting_ = nullptr;
     return is_free(2.0 * furthest(layout, y0, y1), k_most) ? 1.0 : kept_by_all(layout, y0, y1);
@@ -37,10 +37,10 @@ public:
   [[nodiscard]] const Turn* limiting() const { return limiting_; }
 
 private:
-  /// Target, below the limit, so that accelerations rarely make a step exceed it.
+  /// Planned rotation, below the limit, so that accelerations rarely make a step exceed it.
   static constexpr double k_aim = 0.95 * k_most;
 
-  /// Returns true if no rotation is large enough for checking single pairs.
+  /// Returns true if single pairs need not be checked, because no rotation is large enough.
   [[nodiscard]] bool is_free(double twice_turned, double most) const { return !has_knots_ && (turns_.empty() || twice_turned <= most); }
   /// Calls f with the index of each coordinate that is an angle.
   template <class F> static void for_angles(const Layout& layout, const F& f) {
@@ -59,10 +59,9 @@ private:
     for_angles(layout, [&](int i) { most = std::max(most, std::abs(y1[i] - y0[i])); });
     return most;
   }
-  /// Returns the angle, or rate, of the pair's a relative to b for the coordinates or rates in `values`.
+  /// Returns the angle of body a relative to b, rad, or its rate, rad/s. `values`: coordinates or their rates.
   [[nodiscard]] static double relative_turn(const Layout& layout, const Turn& turn, const double* values);
-  /// Returns the difference between the argument of a curve and the angle of the coordinates, since a cluster has the angle of one of its
-  /// bodies.
+  /// Returns the difference between the relative angle of the two bodies and that of their clusters, rad.
   [[nodiscard]] static double offset(const Layout& layout, const Turn& turn);
   [[nodiscard]] double shortened(const Layout& layout, const double* y, const double* dy, double h, int division);
   [[nodiscard]] static double shortened_by(const Turn& turn, const Layout& layout, const double* y, const double* dy, double h,

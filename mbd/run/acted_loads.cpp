@@ -20,11 +20,11 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_same_time = 1e-9; // relative to the duration of the run; closer times are regarded as equal
+constexpr double k_same_time = 1e-9; // times closer than this, relative to the duration of the run, are equal
 
 Finding warning(const char* code, std::string text, const Location& where) { return {code, FindingLevel::warning, std::move(text), where}; }
 
-// A signal, or one part of a sum. Each part of a sum must act completely.
+// A signal, or one term of a sum of signals. Each term must act completely.
 struct LoadPart {
   const SignalEntry* entry = nullptr;
   const Signal* signal = nullptr;
@@ -57,7 +57,7 @@ private:
   SignalNetwork network_;
 };
 
-// Velocities and accelerations of bodies at the end, compared with the largest of the run.
+// Decides whether bodies still move or accelerate at the end, compared with their largest velocities and accelerations of the run.
 class Motions {
 public:
   Motions(const LoadedModel& loaded, const RunResult& result) {
@@ -67,12 +67,12 @@ public:
       add(ranges, loaded.system->bodies[i].name, {"ax", "ay", "alpha"}, is_even_);
     }
   }
-  [[nodiscard]] bool rests() const { return rests_; }     ///< nothing moves any more
-  [[nodiscard]] bool is_even() const { return is_even_; } ///< moving bodies have constant velocity
+  [[nodiscard]] bool rests() const { return rests_; }     ///< all velocities are zero
+  [[nodiscard]] bool is_even() const { return is_even_; } ///< all accelerations are zero: bodies move uniformly
 
 private:
-  // Includes a channel in the comparison. A motion of 0.001 of its maximum is the end of a decay. Below 1e-6 SI units a body at rest creeps
-  // numerically.
+  // Sets `holds` to false if a channel is still large at the end. A value of 0.001 of its maximum is the end of a decay; below 1e-6 SI
+  // units a body at rest creeps numerically.
   static void add(const RangeIndex& ranges, const std::string& body, std::initializer_list<const char*> quantities, bool& holds) {
     constexpr double k_share = 1e-3, k_least = 1e-6;
     for (const char* const quantity : quantities) {
@@ -87,10 +87,10 @@ private:
 
 std::string seconds(double t) { return rounded_text(t) + " s"; }
 
-// Tells whether one signal has acted completely in one of its uses, and creates the finding if not.
+// Checks whether one signal has acted completely in one of its uses, and creates the finding if not.
 class Judge {
 public:
-  // `growth` and `result` are null before a run. `has_course`: some load changes with time, so the run is as long as its course asks.
+  // `growth` and `result` are null before a run. `has_course`: some load changes with time, which determines the length of the run.
   Judge(const LoadedModel& loaded, double end, const ReserveHistory* growth, const RunResult* result, bool has_course)
       : loaded_(loaded), model_(loaded.model), slack_(k_same_time * end), growth_(growth), result_(result), has_course_(has_course) {}
 
@@ -98,27 +98,27 @@ public:
     const SignalCourse& course = part.course;
     const bool is_steady = part.signal->is_constant();
     if (is_steady ? part.signal->value(0.0) == 0.0 : course.is_level()) return std::nullopt;
-    if (is_steady && !use.is_named_at_start) return std::nullopt; // such as "off", which an action may set
+    if (is_steady && !use.is_named_at_start) return std::nullopt; // a constant such as "off" that only an action assigns
     if (use.spans.empty()) return never_begun(use, part.entry->definition->name, part.entry->definition->where);
     if (is_steady) return of_constant(use, "signal '" + part.entry->definition->name + "'", part.entry->definition->where);
     if (std::any_of(use.spans.begin(), use.spans.end(), [&](const SignalSpan& span) { return has_acted(span, part); }))
       return growing(use.spans.back(), part);
-    double at_full_size = 0.0; // s, summed over all intervals if the signal is switched repeatedly
+    double at_full_size = 0.0; // total time at full size, s, over all intervals in which the signal acts
     for (const SignalSpan& span : use.spans)
       at_full_size += std::max(0.0, std::min(span.to, course.ends) - std::max(span.from, course.full));
     if (course.period > 0.0 && at_full_size >= SignalCourse::k_periods * course.period) return std::nullopt;
     return not_acted(use, part);
   }
 
-  // A constant load has no course. It has acted if what it moves has come to rest, or to its worst, before an action ends it; the end of the
-  // run has to wait for that only if no other load says how long the run should be.
+  // Checks a constant load, which has no end. It has acted if the motion or the utilisations that it causes have become constant before an
+  // action ends it. If the run ends it, this is required only if no other load determines the length of the run.
   std::optional<Finding> of_constant(const ActingSignal& use, const std::string& what, const Location& where) const {
     if (!growth_ || use.spans.empty()) return std::nullopt;
     const SignalSpan& last = use.spans.back();
     const bool is_cut = last.cut.action && last.cut.verb != ActionVerb::stop;
     const ElementEntry& entry = model_.elements[use.element];
     if (uses_time(entry) || (!is_cut && (has_course_ || !entry.kind->has_constant_load))) return std::nullopt;
-    const auto has_acted = [&](const SignalSpan& span) { // an even acceleration may go on for ever
+    const auto has_acted = [&](const SignalSpan& span) { // uniform acceleration may continue indefinitely
       return has_settled(span.from, span) || (!is_cut && has_stopped_growing(0.5 * (span.from + span.to), span.to));
     };
     if (std::any_of(use.spans.begin(), use.spans.end(), has_acted)) return std::nullopt;
@@ -127,7 +127,7 @@ public:
 
   std::optional<Finding> never_begun(const ActingSignal& use, const std::string& signal, const Location& where) const {
     if (use.waiting.empty() || std::any_of(use.waiting.begin(), use.waiting.end(), [&](const Action* a) { return is_forbidden(*a); }))
-      return std::nullopt; // an element that no action can start has its own finding
+      return std::nullopt; // action_findings.h reports elements that no action can start
     const std::string& element = model_.elements[use.element].element->name;
     const std::string what =
         signal.empty() ? "load '" + element + "' has never acted" : "signal '" + signal + "' has never acted on '" + element + "'";
@@ -138,7 +138,7 @@ public:
   }
 
 private:
-  // Returns true if a criterion forbids the action. Loads that the action would start are then not expected.
+  // Returns true if a criterion forbids the action. Loads that only this action would start are then not expected to act.
   [[nodiscard]] bool is_forbidden(const Action& action) const {
     return std::any_of(model_.criteria.begin(), model_.criteria.end(), [&](const Criterion& c) {
       return !c.event.empty() && matches_pattern(action.name, c.element.empty() ? "*" : c.element) &&
@@ -149,7 +149,7 @@ private:
   [[nodiscard]] bool has_acted(const SignalSpan& span, const LoadPart& part) const {
     const SignalCourse& course = part.course;
     const double to = span.to + slack_;
-    if (span.cut.action && !span.cut.action->reason.empty()) return true; // loads are intended to end here
+    if (span.cut.action && !span.cut.action->reason.empty()) return true; // an action with a reason ends the load intentionally
     if (!(to > course.begins) || !(span.from < course.ends)) return false;
     if (course.has_end() && to >= course.ends && (span.from <= course.begins + slack_ || is_at_full_size(span.from, part))) return true;
     if (!(course.full < to)) return false;
@@ -158,10 +158,10 @@ private:
     return !course.has_end() && has_settled(since, span);
   }
 
-  // Returns true if the largest value of the signal comes after the time `from` at which it begins to act.
+  // Returns true if the signal reaches its largest value at or after `from`, the time at which it begins to act.
   static bool is_at_full_size(double from, const LoadPart& part) {
-    constexpr double k_nearly = 0.99; // fraction of the maximum; sampling may miss the peak by less
-    constexpr int k_samples = 16;     // samples in each piece
+    constexpr double k_nearly = 0.99; // required fraction of the maximum; the sampled peak may be lower by less
+    constexpr int k_samples = 16;     // samples between two breakpoints
     std::vector<double> times{part.course.begins, from};
     for (const double t : part.signal->breakpoints())
       if (t > part.course.begins && t <= part.course.ends) times.push_back(t);
@@ -183,10 +183,10 @@ private:
     return periods >= k_least && (!growth_ || has_stopped_growing(to - period, to));
   }
 
-  // Returns true if the time from `before` to `to` raised the utilisation of no criterion noticeably. False if nothing is measured.
+  // Returns true if the utilisation of no criterion grew noticeably from `before` to `to`. Returns false if no criterion has a utilisation.
   [[nodiscard]] bool has_stopped_growing(double before, double to) const {
-    constexpr double k_less = 0.01;  // relative to the utilisation so far
-    constexpr double k_still = 1e-6; // relative to the limit; extremes are located no more accurately
+    constexpr double k_less = 0.01;  // growth relative to the utilisation so far
+    constexpr double k_still = 1e-6; // growth relative to the reserve at the start, the accuracy of extremes
     for (std::size_t i = 0; i < growth_->count(); ++i) {
       const double left = growth_->reserve(i, to + slack_), first = growth_->first_reserve(i);
       if (!std::isfinite(left) || !std::isfinite(first)) continue;
@@ -195,7 +195,8 @@ private:
     return growth_->count() > 0;
   }
 
-  // Returns true if a load at a constant level has had its full effect. Where an action ends it, only extremes are known of the motion.
+  // Returns true if a load at a constant level has had its full effect. If an action ends the load, only the extremes up to then are known,
+  // not the motion.
   [[nodiscard]] bool has_settled(double since, const SignalSpan& span) const {
     if (!growth_ || !result_ || (span.cut.action && !span.cut.action->reason.empty())) return true;
     if (span.cut.action && span.cut.verb != ActionVerb::stop)
@@ -209,8 +210,8 @@ private:
     return false;
   }
 
-  // Returns a finding if a criterion still grows under a periodic load. It may grow without limit (resonance). The second half of the time
-  // at full size shows the rate of growth.
+  // Returns a finding if a criterion still grows under a periodic load, perhaps without limit (resonance). The rate of growth is that of
+  // the second half of the time at full size.
   [[nodiscard]] std::optional<Finding> growing(const SignalSpan& span, const LoadPart& part) const {
     const double since = std::max(part.course.full, span.from), half = 0.5 * (since + span.to);
     const bool is_at_end = !span.cut.action || (span.cut.verb == ActionVerb::stop && span.cut.action->reason.empty());
@@ -291,7 +292,7 @@ private:
 
   const LoadedModel& loaded_;
   const Model& model_;
-  double slack_;                 ///< s
+  double slack_;                 ///< tolerance for times, s
   const ReserveHistory* growth_; ///< null before a run
   const RunResult* result_;      ///< null before a run
   bool has_course_;

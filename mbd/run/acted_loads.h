@@ -9,10 +9,10 @@
 //                          utilisation of each criterion by less than 0.01
 //   ramp and hold,         nothing moves any more; or the second half of the time at full size raised the utilisation of each criterion
 //   constant               by less than 0.01, and some utilisation is above zero, bodies move uniformly, or an action ends it. A constant
-//                          load asks for no longer run if others change with time
-//   formula of time        it changes within the run, or it does not change after the end either
+//                          load does not require a longer run if other loads change with time
+//   formula of time        it changes within the run, or it is constant after the end, too
 //
-// An action with a `reason` that cuts off a load is intended; such a load is not reported.
+// An action with a `reason` that ends a load is intended; such a load is not reported.
 #pragma once
 
 #include "mbd/run/findings.h"
@@ -20,7 +20,7 @@
 
 namespace steplap {
 
-/// Returns, before a run, the signals that its end cuts off. Assumes that no action happens.
+/// Returns, before a run, a finding for each signal that the end of the run cuts off. Assumes that no action is executed.
 [[nodiscard]] std::vector<Finding> loads_beyond_end(const LoadedModel& loaded);
 /// Returns, after a completed run, one finding for each load that has not acted completely. `judgement` belongs to `result`.
 [[nodiscard]] std::vector<Finding> loads_not_acted(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement);

@@ -13,7 +13,7 @@ namespace steplap {
 
 namespace {
 
-// Follows a run from its first leg to its last.
+// Reconstructs all legs of a run from its events.
 class LegFollower {
 public:
   explicit LegFollower(const Model& model) : model_(model) {
@@ -57,7 +57,7 @@ public:
     }
   }
 
-  // Adds loads that actions would have started if they had happened.
+  // Records the action as one that would have started the loads that its steps name.
   void wait(const Action& action) {
     for (const std::string& text : action.steps) {
       const ActionStepText step = action_step(text);
@@ -82,7 +82,7 @@ public:
   }
 
 private:
-  using Place = std::pair<std::size_t, std::string>; // element and field
+  using Place = std::pair<std::size_t, std::string>; // element index and field name
   struct Now {
     ActingSignal* use = nullptr;
     double since = 0.0;
@@ -111,8 +111,10 @@ private:
     const auto found = now_.find({element, field});
     if (found == now_.end() || !acts_[element]) return;
     std::vector<SignalSpan>& spans = found->second.use->spans;
-    if (!(t > found->second.since) && !spans.empty()) return;                      // an empty span only tells what ended a load at once
-    const bool goes_on = !spans.empty() && spans.back().to == found->second.since; // it was set to the value that it already had
+    // an interval of zero length is kept only as the first one, for the reason of its end
+    if (!(t > found->second.since) && !spans.empty()) return;
+    // Continues an interval: the field was set to the value that it already had.
+    const bool goes_on = !spans.empty() && spans.back().to == found->second.since;
     if (goes_on) spans.back().to = t, spans.back().cut = cut;
     else spans.push_back({found->second.since, t, cut});
   }
@@ -127,7 +129,7 @@ private:
   }
 
   const Model& model_;
-  std::unordered_map<std::string, std::size_t> index_; ///< of elements
+  std::unordered_map<std::string, std::size_t> index_; ///< index of each element by name
   std::vector<bool> acts_;
   std::map<std::pair<std::size_t, std::pair<std::string, std::string>>, ActingSignal> uses_; ///< key: element, field and signal
   std::map<Place, Now> now_;

@@ -1,5 +1,5 @@
-// Computes when each signal acts on each element in a run. Actions start and end this by releasing, holding and setting elements; their
-// times are reconstructed from the events of the run, so the run need not record anything else.
+// Computes the intervals in which each signal acts on each element in a run. Actions start and end these intervals by releasing, holding
+// and setting elements; the times of actions are taken from the events of the run, so the run need not record anything else.
 #pragma once
 
 #include "mbd/model/action.h"
@@ -12,29 +12,30 @@ namespace steplap {
 
 /// The end of an interval in which a signal acts.
 struct SignalCut {
-  const Action* action = nullptr;     ///< null: the end of the run
-  ActionVerb verb = ActionVerb::stop; ///< effect of the action on the signal
+  const Action* action = nullptr;     ///< action that ends the interval; null: the end of the run
+  ActionVerb verb = ActionVerb::stop; ///< what the action does to the signal
 };
 
 /// An interval of time in which a signal acts on an element.
 struct SignalSpan {
-  double from = 0.0, to = 0.0; ///< s
-  SignalCut cut;               ///< reason for the end
+  double from = 0.0, to = 0.0; ///< begin and end, s
+  SignalCut cut;               ///< reason for the end of the interval
 };
 
 /// Use of a signal by a field of an element.
 struct ActingSignal {
-  std::size_t element = 0;            ///< in Model::elements
+  std::size_t element = 0;            ///< index in Model::elements
   std::string field;                  ///< name of the field
   std::string signal;                 ///< name of the signal; "" for loads given by constants only
   bool is_named_at_start = false;     ///< true if the element names the signal itself, false if only an action assigns it
-  std::vector<SignalSpan> spans;      ///< ascending in time; empty if the signal never acted; a first one may have no length
-  std::vector<const Action*> waiting; ///< if it never acted: actions that would have started it, but did not happen
+  std::vector<SignalSpan> spans;      ///< ascending in time; empty if the signal never acted; the first interval may have zero length
+  std::vector<const Action*> waiting; ///< for a signal that never acted: actions that would have started it, but were not executed
 };
 
-/// Returns all uses of signals from t = 0 to result.final_state.t, s, including signals assigned only by actions that did not happen.
+/// Returns all uses of signals from t = 0 to result.final_state.t, including signals that only actions without execution would have
+/// assigned.
 [[nodiscard]] std::vector<ActingSignal> acting_signals(const Model& model, const RunResult& result);
-/// Returns all uses of signals from t = 0 to `end`, s, for a run in which no action happens.
+/// Returns all uses of signals from t = 0 to `end`, s, for a run in which no action is executed.
 [[nodiscard]] std::vector<ActingSignal> acting_signals_without_actions(const Model& model, double end);
 
 /// Returns the action of that name, or nullptr if there is none.

@@ -12,7 +12,7 @@ namespace steplap {
 
 namespace {
 
-// Returns the names after one verb in all steps of a group, or of all groups: NAME in "hold NAME", "arm NAME".
+// Returns the names after one verb in all steps of `group`, or of all actions if it is null: NAME in "hold NAME", "arm NAME".
 std::unordered_set<std::string> names_after(const ActionGroup* group, const Model& model, ActionVerb verb) {
   std::unordered_set<std::string> names;
   if (!group) return names;

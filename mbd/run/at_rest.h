@@ -1,4 +1,4 @@
-// Tells whether anything moved in a run. In a run at rest errors cannot be related to the range of a channel.
+// Decides whether anything moved in a run. In a run at rest no channel has a range to which an error could be related.
 #pragma once
 
 #include "mbd/run/run.h"

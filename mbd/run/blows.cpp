@@ -19,7 +19,7 @@ namespace {
 // Returns "rope" for "rope.tension".
 std::string owner_of(const std::string& channel) { return channel.substr(0, std::min(channel.rfind('.'), channel.size())); }
 
-// Returns all impacts of a run, with the elements that an action closed in place of the action.
+// Returns all impacts of a run. Those caused by an action are assigned to the elements that the action activated.
 std::vector<RigidBlow> blows_of(const Model& model, const RunResult& result) {
   std::vector<RigidBlow> blows;
   for (const RigidBlow& blow : result.blows) {
@@ -32,7 +32,8 @@ std::vector<RigidBlow> blows_of(const Model& model, const RunResult& result) {
   return blows;
 }
 
-// All bodies and elements that took part in an impact or are connected to such bodies by constraints, with the time of their first impact.
+// Set of all bodies and elements that took part in an impact or are connected to such bodies by constraints, with the time of their first
+// impact.
 class ImpactParticipants {
 public:
   ImpactParticipants(const LoadedModel& loaded, const std::vector<RigidBlow>& blows) : model_(loaded.model), system_(*loaded.system) {

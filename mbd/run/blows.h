@@ -1,7 +1,7 @@
-// Detects rigid impacts: an inextensible rope becomes taut, a clutch locks, or an action closes a joint between moving bodies.
+// Detects rigid impacts: an inextensible rope becomes taut, a clutch locks, or an action activates a joint between moving bodies.
 //
-// A rigid impact makes velocities jump. It transmits an impulse, but its force is unknown: 100 kN for 1 ms and 1 MN for 0.1 ms are the same
-// impulse. Forces and accelerations would depend on a compliance that the model does not contain.
+// In a rigid impact velocities jump. Its impulse is known, but its force is not: 100 kN for 1 ms and 1 MN for 0.1 ms are the same impulse.
+// Forces and accelerations would depend on a compliance that the model does not contain.
 #pragma once
 
 #include "mbd/run/loaded_model.h"
@@ -12,12 +12,12 @@
 
 namespace steplap {
 
-/// First words of CriterionResult::doubt for such a criterion. They distinguish it from doubts about numerical errors.
+/// First words of CriterionResult::doubt for a criterion that a rigid impact leaves open, in contrast to numerical errors.
 inline constexpr std::string_view k_but_for_a_blow = "met except for a rigid impact";
 
-/// Sets criteria from "hold" to "open" if a rigid impact makes their value unknown, and updates the verdict. This concerns limits on
-/// forces, couples and accelerations of the elements and bodies that take part in the impact, and of all bodies connected to them by
-/// constraint rows. Criteria that are not met remain so.
+/// Sets criteria from "hold" to "open" if a rigid impact makes their value unknown, and updates the verdict. Affected are limits on forces,
+/// couples and accelerations of the elements and bodies that take part in the impact, and of all bodies connected to them by constraint
+/// rows. Criteria that are not met are unchanged.
 void leave_struck_open(Judgement& judgement, const LoadedModel& loaded, const RunResult& result);
 
 } // namespace steplap

@@ -12,7 +12,7 @@ namespace steplap {
 
 namespace {
 
-// Body index of a marker, and its distance from that body's centre of gravity, m.
+// Index of the body of a marker, and distance of the marker from that body's centre of gravity, m; by marker name.
 using Places = std::unordered_map<std::string, std::pair<std::size_t, double>>;
 
 double farthest(const std::vector<Vec2>& points, const Vec2& from) {
@@ -28,7 +28,7 @@ Vec2 place_on(const Body& body, const Marker& marker) {
   return rotated(*marker.at - Vec2(pose.x(), pose.y()), -pose.z());
 }
 
-// Returns the largest distance from the markers to circles and corners of outlines that the element has around them, m.
+// Returns the largest radius, m, of the circles and outlines that the element defines around its markers.
 double rim_of(const ElementEntry& entry) {
   double most = 0.0;
   for (const Field& field : entry.kind->fields.fields()) {

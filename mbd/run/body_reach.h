@@ -7,8 +7,8 @@
 
 namespace steplap {
 
-/// Returns for each body of the model, m, the largest distance from its centre of gravity to its outline, to its markers and to circles of
-/// elements around these markers. It is 0 if the model gives the centre of gravity only.
+/// Returns for each body of the model, in m, the largest distance from its centre of gravity to its outline, to its markers and to circles
+/// of elements around these markers; 0 if the model gives only the centre of gravity.
 [[nodiscard]] std::vector<double> body_reaches(const Model& model);
 /// Returns the diagonal, m, of the rectangle around all bodies in their given poses, each enlarged by its value in `reaches`, and all
 /// markers of the ground.

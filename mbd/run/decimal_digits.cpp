@@ -12,7 +12,7 @@ namespace {
 std::string plain(double value, int decimals) {
   char text[400];
   std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  if (std::strtod(text, nullptr) == 0.0 && text[0] == '-') return text + 1; // no "-0"
+  if (std::strtod(text, nullptr) == 0.0 && text[0] == '-') return text + 1; // avoids "-0"
   return text;
 }
 

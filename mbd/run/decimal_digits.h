@@ -10,10 +10,10 @@ struct DecimalDigit {
   int digit = 1, exponent = 0; ///< 0.03 has digit 3 and exponent −2
 };
 
-/// Returns the first digit of |value|, not rounded. It is taken from the printed digits, because a logarithm may be rounded to the wrong
-/// side of a power of ten.
+/// Returns the first nonzero digit of |value|, not rounded. The digit is taken from the printed number, because a logarithm may be rounded
+/// to the wrong side of a power of ten.
 [[nodiscard]] DecimalDigit first_digit(double value);
-/// Returns the exponent of the first digit; 0 if value is 0.
+/// Returns the decimal exponent of the first digit of |value|; 0 if value is 0.
 [[nodiscard]] int exponent_of(double value);
 /// Returns 10^exponent, correctly rounded.
 [[nodiscard]] double power_of_ten(int exponent);

@@ -28,7 +28,7 @@ Json outline_json(const std::vector<Vec2>& outline) {
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// Returns the convex hull, counter-clockwise (A. M. Andrew, Inf. Process. Lett. 9 (1979) 216); two points if all are on a line.
+// Returns the convex hull, counter-clockwise (A. M. Andrew, Inf. Process. Lett. 9 (1979) 216); two points if all points are on a line.
 std::vector<Vec2> hull(std::vector<Vec2> points) {
   std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
   points.erase(std::unique(points.begin(), points.end()), points.end());
@@ -46,7 +46,7 @@ std::vector<Vec2> hull(std::vector<Vec2> points) {
   return chain;
 }
 
-// Rounds to multiples of 1e-9, so that planes that differ by rounding are recognised as equal.
+// Rounds to multiples of 1e-9, so that contact planes that differ by rounding become equal.
 long long coarse(double value) { return std::llround(1e9 * value); }
 
 class Drawing {
@@ -60,7 +60,7 @@ public:
     Json elements = Json::array();
     for (const ElementEntry& entry : model_.elements) elements.push_back(element_json(entry));
     Json json = object_with_room(10);
-    append(json, "bodies") = bodies_json(); // after the elements, which define geometry of bodies
+    append(json, "bodies") = bodies_json(); // must follow the elements, which define geometry of bodies
     append(json, "elements") = std::move(elements);
     append(json, "ground") = ground_json();
     append(json, "planes") = planes_;
@@ -103,7 +103,8 @@ private:
     return found == bodies_.end() ? nullptr : found->second;
   }
 
-  // Transforms from the ground frame in the reference pose, or from the frame of a body.
+  // Transforms a point to the body's axes about its centre of gravity: from ground axes in the reference pose, or from the frame of the
+  // body.
   [[nodiscard]] static Vec2 about_centre(const Vec2& p, bool is_in_ground, const Body* body) {
     if (!body) return p;
     if (!is_in_ground) return p - body->cg;
@@ -161,7 +162,7 @@ private:
     return json;
   }
 
-  // Returns the index of the half-plane of a contact. All contacts with one line of a body share one.
+  // Returns the index of the half-plane of a contact. Contacts with the same line of a body share one half-plane.
   std::size_t plane_of(const MarkerPlace& place, const Vec2& normal, const std::vector<double>& ends) {
     std::vector<long long> key{coarse(normal.x()), coarse(normal.y()), coarse(normal.dot(place.point))};
     const double along = Vec2(normal.y(), -normal.x()).dot(place.point);
@@ -172,10 +173,10 @@ private:
     return found->second;
   }
 
-  // Returns a rectangle about the centre of gravity of a body whose size only its moment of inertia J = m (a² + b²)/12 and the places where
-  // elements act tell: b is the height of these places, and a follows from J; without a height a is their width. Where J is too small to
-  // contain the places, the rectangle is as large as J permits. Returns nothing if the places are all at the centre of gravity, or if J is
-  // that of a slender rod between them, or is larger than that of a body some times as large as the places.
+  // Returns a rectangle about the centre of gravity for a body without outline. Its size follows from the moment of inertia J = m (a² +
+  // b²)/12 and the points at which elements act: b is the height of these points, and a follows from J; without a height a is their width.
+  // If J is too small for the rectangle to contain the points, it is as large as J permits. Returns nothing if all points are at the centre
+  // of gravity, if J is that of a slender rod between them, or if J is that of a body k_most_growth times as large as the points.
   [[nodiscard]] static std::vector<Vec2> rectangle_of(const Body& body, const std::vector<Vec2>& places) {
     constexpr double k_most_growth = 3.0, k_slender = 0.02;
     if (body.fixed) return {};
@@ -191,8 +192,8 @@ private:
     return {-half, {half.x(), -half.y()}, half, {-half.x(), half.y()}};
   }
 
-  // Returns the given outline. Without one it is a rectangle (rectangle_of), or for bodies that elements give other geometry the convex hull
-  // of the centre of gravity and of the points of elements that no circle of the body covers.
+  // Returns the given outline. Without one the result is a rectangle (rectangle_of) or, for bodies with other geometry from elements, the
+  // convex hull of the centre of gravity and of the points of elements outside all circles of the body.
   [[nodiscard]] static std::vector<Vec2> outline_of(const Body& body, const BodyGeometry& geometry) {
     std::vector<Vec2> outline;
     for (const Vec2& p : body.outline) outline.push_back(p - body.cg);
@@ -246,14 +247,14 @@ private:
     return json;
   }
 
-  // Returns points of a sheet in the axes of the body that carries it, about its centre of gravity.
+  // Transforms points of a sheet to the axes of the body that carries it, about its centre of gravity.
   [[nodiscard]] std::vector<Vec2> sheet(const std::vector<Vec2>& corners, bool is_in_ground, const std::string& owner) const {
     std::vector<Vec2> local;
     for (const Vec2& p : corners) local.push_back(about_centre(p, is_in_ground, body(owner)));
     return local;
   }
 
-  // Returns the round holes of one sheet as polygons, and its cutouts.
+  // Returns the holes of one sheet: round holes as polygons, then cutouts.
   [[nodiscard]] Json holes_json(const DrawnSheets& pair, bool is_yoke, const std::string& owner) const {
     Json json = Json::array();
     for (const Vec2& centre : sheet(is_yoke ? pair.yoke_holes : pair.limb_holes, pair.is_in_ground, owner)) {

@@ -11,10 +11,10 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_at_end = 1e-9; // relative; the last step may end short of the end of the run
-constexpr double k_beyond = 1e-3; // relative to the length of the outline along the face; feet may stand on an edge
+constexpr double k_at_end = 1e-9; // tolerance relative to the duration: the last step may end short of the end of the run
+constexpr double k_beyond = 1e-3; // tolerance relative to the length of the outline along the face, for feet that stand on an edge
 
-// Returns the finding, for a contact that pressed `beyond` metres beyond the end of its part; nothing if that is not noticeable.
+// Returns the finding for a contact that pressed `beyond` metres beyond the end of its part; nothing if this is within tolerance.
 std::optional<Finding> beyond_edge(const LoadedModel& loaded, const EndlessFace& face, double beyond, const std::string& when) {
   if (beyond <= k_beyond * (face.high - face.low)) return std::nullopt;
   const ElementEntry& entry = loaded.model.elements[static_cast<std::size_t>(face.element)];
@@ -60,7 +60,7 @@ std::vector<Finding> contacts_beyond_edges(const LoadedModel& loaded, const Stat
 }
 
 std::vector<Finding> contacts_beyond_edges(const LoadedModel& loaded, const RunResult& result) {
-  std::map<int, const FaceTravel*> farthest; // by element, over all legs
+  std::map<int, const FaceTravel*> farthest; // largest travel by element, over all legs
   for (const FaceTravel& travel : result.face_travels) {
     const FaceTravel*& known = farthest[travel.face.element];
     if (!known || travel.beyond > known->beyond) known = &travel;

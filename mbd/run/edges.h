@@ -1,5 +1,5 @@
-// Finds contacts that have left their part: pressed beyond the end of the outline that supports them (endless_face.h), or deeper than it is
-// thick.
+// Finds contacts that have left their part: pressed beyond the end of the outline that supports them (endless_face.h), or deeper than the
+// outline is thick.
 #pragma once
 
 #include "mbd/run/finding.h"
@@ -8,8 +8,8 @@
 
 namespace steplap {
 
-/// Returns one finding for each contact that is closed at `state` and presses beyond the end of its part. Parts without an outline are not
-/// checked.
+/// Returns one finding for each contact that is closed at `state` and presses beyond the end of its part. Parts without an outline have no
+/// end.
 [[nodiscard]] std::vector<Finding> contacts_beyond_edges(const LoadedModel& loaded, const State& state);
 
 /// Returns one finding for each contact that pressed beyond the end of its part at any time of the run.

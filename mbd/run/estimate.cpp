@@ -10,13 +10,13 @@ namespace steplap {
 
 namespace {
 
-// One evaluated part takes about 40 to 300 ns; with much sliding more.
-constexpr double k_little = 1e7; // evaluated parts
+// Limit for automatic estimates. One evaluated part takes about 40 to 300 ns; with much sliding more.
+constexpr double k_little = 1e7; // limit in evaluated parts (evaluation_cost())
 constexpr double k_most = 3.0;   // finer runs that need more than k_most times the limit are abandoned
-// A run with many short steps may still have cheap adaptive reference runs. They are tried if at least this number of evaluations is
-// permitted, with at most the work of the run itself.
+// Least number of permitted evaluations for adaptive reference runs. Such runs may be cheap even if the run itself has many short steps;
+// they are tried with at most the work of the run.
 constexpr double k_least_references = 5000.0;
-constexpr double k_nudged = 1.5; // times the run: for a run from a perturbed pose, which a verdict requires at any cost
+constexpr double k_nudged = 1.5; // permitted cost of a run from a perturbed pose, in runs; verdicts require it even if it is expensive
 
 Estimate none(EstimateStatus status, std::string reason) { return {status, std::move(reason), {}, {}}; }
 
@@ -29,7 +29,7 @@ Estimate estimate_errors(const Run& run, const RunOptions& options) {
   const SimulationOptions as_run = simulation_options(loaded, options);
   const RunStatistics& statistics = run.result.statistics;
   double most_evaluations = std::numeric_limits<double>::infinity();
-  std::optional<Estimate> too_dear; // result if reference runs do not help either
+  std::optional<Estimate> too_dear; // result if reference runs are not possible either
   if (options.estimating == Estimating::cheap) {
     const double times = relative_cost_of_finer_runs(*loaded.system, as_run), parts = evaluation_cost(*loaded.system, statistics);
     const double evaluations_a_part = static_cast<double>(statistics.evaluations) / std::max(parts, 1.0);
@@ -49,7 +49,7 @@ Estimate estimate_errors(const Run& run, const RunOptions& options) {
     try {
       const double as_dear_as_the_run = k_nudged * static_cast<double>(statistics.evaluations);
       estimate.balance = balance_of(*loaded.system, initial, as_run, run.result, std::max(most_evaluations, as_dear_as_the_run));
-    } catch (const NumericalFailure& failure) { // the errors remain known
+    } catch (const NumericalFailure& failure) { // only stability is unknown; the errors are known
       estimate.balance_unknown = failure.what();
     }
     return estimate;

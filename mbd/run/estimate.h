@@ -21,12 +21,12 @@ struct Estimate {
   std::string reason;                               ///< reason if there is no estimate
   std::optional<double> cost;                       ///< predicted computing time, s, if the finer runs were not started because of it
   std::optional<GlobalErrorEstimate> errors;        ///< set if status is `known`
-  std::optional<Balance> balance = {};              ///< set if errors are known and the machine rests in an unstable equilibrium
+  std::optional<Balance> balance = {};              ///< set if errors are known and the machine is in an unstable equilibrium
   std::string balance_unknown = {};                 ///< reason if stability could not be determined; empty otherwise
 };
 
-/// Estimates the errors of `run`. Whether finer runs are too expensive is decided by counting operations, not by time: verdicts depend on
-/// the errors and must not depend on the speed or load of the computer.
+/// Estimates the errors of `run`. The cost of finer runs is measured in operations, not in time: verdicts depend on the errors and must not
+/// depend on the speed or load of the computer.
 [[nodiscard]] Estimate estimate_errors(const Run& run, const RunOptions& options);
 
 } // namespace steplap

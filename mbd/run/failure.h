@@ -1,4 +1,4 @@
-// Describes why a run, or the search for its start, ended early, with the elements concerned and their positions in the model file.
+// Describes why a run, or the search for its initial state, ended early, with the elements concerned and their positions in the model file.
 #pragma once
 
 #include "mbd/base/diagnostics.h"

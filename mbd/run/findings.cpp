@@ -37,7 +37,7 @@ namespace {
 
 using Names = std::unordered_set<std::string>;
 
-// Names to which fields of elements refer, by type of the field.
+// Names to which the fields of elements refer, by type of the field.
 struct References {
   Names signals, markers, bodies;
 };
@@ -55,7 +55,7 @@ References references_of(const Model& model) {
       if (field.type == FieldType::marker) names = &found.markers;
       if (field.type == FieldType::body) names = &found.bodies;
       if (names) names->insert(std::get<std::string>(field.get(entry.element.get())));
-      if (field.name == "over" && field.type == FieldType::texts) { // markers over which a rope runs
+      if (field.name == "over" && field.type == FieldType::texts) { // names of markers over which a rope runs
         const auto over = std::get<std::vector<std::string>>(field.get(entry.element.get()));
         found.markers.insert(over.begin(), over.end());
       }
@@ -68,7 +68,7 @@ References references_of(const Model& model) {
       found.signals.insert(name);
       if (const std::size_t point = name.rfind('.'); point != std::string::npos) found.markers.insert(name.substr(0, point));
     }
-  for (const TableEntry& entry : model.tables) // position of a recorder
+  for (const TableEntry& entry : model.tables) // tables can refer to markers, for example to the position of a recorder
     for (const Field& field : entry.kind->fields.fields())
       if (field.type == FieldType::marker) found.markers.insert(std::get<std::string>(field.get(entry.table.get())));
   for (const Marker& marker : model.markers)
@@ -101,9 +101,10 @@ std::string list_of(const System& system, const std::vector<SharedReaction>& rea
   return shown < reactions.size() ? text + " and " + std::to_string(reactions.size() - shown) + " more" : text;
 }
 
-// Finds elements without effect, between two points of one body or of two fixed bodies. Joints and drives reject this themselves.
+// Finds elements without effect, because they act between two points of one body or of two fixed bodies. Joints and drives report this
+// themselves.
 void warn_of_idle_elements(const Model& model, Findings& findings) {
-  std::unordered_map<std::string, std::string> body_of; // by marker and body; "" does not move
+  std::unordered_map<std::string, std::string> body_of; // moving body of each marker and body; "" if it is fixed
   body_of["ground"] = "";
   for (const Body& body : model.bodies) body_of[body.name] = body.fixed ? "" : body.name;
   for (const Marker& marker : model.markers)
@@ -124,7 +125,7 @@ void warn_of_idle_elements(const Model& model, Findings& findings) {
   }
 }
 
-// Finds parameters that are used nowhere. Perhaps the name is misspelt where it should be used.
+// Finds parameters that are used nowhere, perhaps because the name is misspelt where it should be used.
 void warn_of_unused_parameters(const Model& model, Findings& findings) {
   const Parameters& parameters = model.parameters;
   Names in_formulas; // names in formulas of forces and states
@@ -171,7 +172,8 @@ bool is_driven_at_start(const Model& model, const Names& used) {
 
 // Initial accelerations of the bodies, and contact forces at the start.
 struct Start {
-  std::vector<double> acceleration; ///< per body, m/s²: of its centre of gravity, or angular acceleration times radius of gyration
+  /// Per body, m/s²: acceleration of the centre of gravity, or angular acceleration times radius of gyration.
+  std::vector<double> acceleration;
   std::vector<ContactAtStart> contacts;
   std::vector<PairJacobian> springs;
 };
@@ -208,12 +210,12 @@ std::string short_number(double value) {
   return text;
 }
 
-constexpr double k_near = 0.5;     // of a body's size; a body at a greater height is regarded as dropped
-constexpr double k_settles = 1e-3; // of a body's size; smaller deflections are settling under load
+constexpr double k_near = 0.5;     // largest distance to a contact, in body sizes; a body at a greater height is dropped intentionally
+constexpr double k_settles = 1e-3; // largest deflection, in body sizes, that counts as settling under load
 
-// Explains why a body accelerates at the start, if there is a notable cause: nearby contacts that do not carry it, springs that are not
-// balanced. Bodies guided by joints are regarded as released, bodies higher than half their size as dropped, bodies on contacts as
-// settling.
+// Returns the cause of a body's acceleration at the start as text: nearby contacts that do not carry it, or springs that are not balanced.
+// Returns "" if the motion is probably intended: bodies guided by joints are released, bodies higher than half their size are dropped,
+// bodies on contacts settle.
 std::string cause_of(const System& system, const Start& start, int body) {
   const double size = size_of_pair(system, body, k_ground);
   const ContactAtStart* nearest = nullptr;
@@ -237,7 +239,7 @@ std::string cause_of(const System& system, const Start& start, int body) {
 
 // Finds bodies at rest that begin to move although something near should hold them.
 void note_restless_start(const LoadedModel& loaded, Findings& findings) {
-  constexpr double k_felt = 1e-3; // of gravity; larger accelerations are noticeable next to those due to drives
+  constexpr double k_felt = 1e-3; // acceleration, relative to gravity, above which a motion is noticeable next to those due to drives
   if (loaded.model.simulation.initial == "equilibrium" || is_driven_at_start(loaded.model, references_of(loaded.model).signals)) return;
   const System& system = *loaded.system;
   const State initial = assembled_start(system, loaded.assembled);
@@ -246,7 +248,7 @@ void note_restless_start(const LoadedModel& loaded, Findings& findings) {
   try {
     start = start_of(loaded, initial);
   } catch (const NumericalFailure&) {
-    return; // the run will report the error
+    return; // the run reports the error
   }
   int worst = -1;
   std::string cause;
@@ -269,7 +271,7 @@ void note_restless_start(const LoadedModel& loaded, Findings& findings) {
                       body ? body->where : Location{}});
 }
 
-// Returns true if a table created the body. Free ends of such bodies (beams) are intended.
+// Returns true if a table created the body. The free ends of such bodies (beams) are intended.
 bool is_made_by_table(const Model& model, const std::string& name) {
   return std::any_of(model.tables.begin(), model.tables.end(),
                      [&](const TableEntry& e) { return body_builder(e) && name.starts_with(e.table->name + "."); });
@@ -282,8 +284,8 @@ void warn_of_renamed_keys(const Model& model, Findings& findings) {
          key.where);
 }
 
-// Unused signals and markers are mistakes only in the file that is run. A file that it extends or uses as a part offers more than each model
-// needs.
+// Finds unused signals and markers, only in the file that is run: a file that it extends or includes as a part may offer more than one
+// model needs.
 void warn_of_unused(const Model& model, Findings& findings) {
   const References used = references_of(model);
   const auto is_inherited = [&](const Location& where) { return where.file != model.header.where.file; };
@@ -292,7 +294,7 @@ void warn_of_unused(const Model& model, Findings& findings) {
       warn(findings, "unused_signal", "signal '" + entry.definition->name + "' is used by nothing", entry.definition->where);
   Names body_names;
   for (const Body& body : model.bodies) body_names.insert(body.name);
-  for (const Marker& marker : model.markers) // a marker with its body's name is created by the reader
+  for (const Marker& marker : model.markers) // a marker with the name of its body was created by the reader, not by the user
     if (used.markers.count(marker.name) == 0 && body_names.count(marker.name) == 0 && marker.name != "ground" &&
         !is_made_by_table(model, marker.name) && !is_inherited(marker.where))
       warn(findings, "unused_marker", "marker '" + marker.name + "' is used by nothing", marker.where);
@@ -317,9 +319,9 @@ std::vector<Finding> implausible_findings(const LoadedModel& loaded) {
 
 namespace {
 
-// Finds given poses that assembly changed noticeably. Digits lost in the file, and velocities set by drives or joints, need no mention.
+// Finds given poses that assembly changed noticeably. Digits lost in the file, and velocities set by drives or joints, are not reported.
 std::optional<Finding> note_of_moves(const LoadedModel& loaded) {
-  constexpr double k_noticeable = 1e-5; // m, rad
+  constexpr double k_noticeable = 1e-5; // displacement, m, or rotation, rad
   const System& system = *loaded.system;
   auto moves = assembly_moves(system.initial_state(), loaded.assembled, k_noticeable);
   std::erase_if(moves, [](const AssemblyMove& m) { return m.shift <= k_noticeable && std::abs(m.turn) <= k_noticeable; });

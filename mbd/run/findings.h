@@ -12,7 +12,7 @@ struct Balance;
 struct Judgement;
 struct RunResult;
 
-/// Returns all findings that `steplap check` reports, in its order. Computes the initial state, but runs nothing.
+/// Returns all findings that `steplap check` reports, in its order. Computes the initial state but makes no run.
 [[nodiscard]] std::vector<Finding> findings_of(const LoadedModel& loaded);
 /// Returns those of findings_of() that affect the meaning of a run's results.
 [[nodiscard]] std::vector<Finding> findings_before(const LoadedModel& loaded);

@@ -25,7 +25,7 @@ bool uses_time(const ElementEntry& entry) {
       const Formula formula(std::get<std::string>(field.get(entry.element.get())), field.name, {});
       if (std::any_of(formula.tree().begin(), formula.tree().end(), [](const FormulaNode& node) { return node.op == FormulaOp::time; }))
         return true;
-    } catch (const ModelError&) { // not a formula, or the error is reported when the element is compiled
+    } catch (const ModelError&) { // not a formula; an invalid formula is reported when the element is compiled
     }
   }
   return false;
@@ -33,14 +33,16 @@ bool uses_time(const ElementEntry& entry) {
 
 namespace {
 
-constexpr int k_samples = 200;    // samples within the run; as many shortly after its end, and in a geometric sequence further on
-constexpr double k_near = 10.0;   // run lengths over which the first samples after the end are evenly spaced
-constexpr double k_larger = 1.25; // relative to the run; peaks of sums of harmonics differ by less between intervals
-constexpr double k_far = 100.0;   // run lengths within which a load reaches its full size, if it has one
-constexpr double k_behind = 1e4;  // run lengths up to the last sample
-constexpr double k_alike = 1e-9;  // relative to the largest value; smaller differences are rounding
+// Samples within the run, in the k_near run lengths after it, and in a geometric sequence from there to k_behind.
+constexpr int k_samples = 200;
+constexpr double k_near = 10.0; // range of the evenly spaced samples after the end, in run lengths
+// Smallest excess over values of the run, as ratio; peaks of sums of harmonics differ by less from interval to interval.
+constexpr double k_larger = 1.25;
+constexpr double k_far = 100.0;  // range in which a load reaches its full size, if it has one, in run lengths
+constexpr double k_behind = 1e4; // last sample, in run lengths
+constexpr double k_alike = 1e-9; // differences below this fraction of the largest value are rounding
 
-// Computes the force of an element, or the rate of a state, at other times, with the bodies in their final state.
+// Computes the force of an element, or the rate of a state, at any time, with the bodies in their final state.
 class AtOtherTimes {
 public:
   AtOtherTimes(const Model& model, const System& system, const State& state, const std::string& element)
@@ -84,7 +86,7 @@ private:
   State state_;
   Dynamics dynamics_;
   std::vector<const Channel*> channels_;
-  std::vector<std::size_t> units_, inner_; ///< in System::units and State::inner
+  std::vector<std::size_t> units_, inner_; ///< indices in System::units and State::inner
   std::vector<double> y_, dy_;
 };
 
@@ -94,14 +96,14 @@ bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
   return true;
 }
 
-// Position of the sample in each interval. It is irrational relative to any period, because evenly spaced samples would always meet a
-// harmonic at the same phase.
+// Returns the position of sample i within its interval. The golden ratio avoids aliasing: evenly spaced samples could meet a harmonic
+// always at the same phase.
 double golden(int i) { return std::fmod(i * 0.6180339887498949, 1.0); }
 
-// Behaviour of a formula after the end of a run.
+// First sample after the end of a run at which a formula has an effect that the run did not show.
 struct LateEffect {
   double t = 0.0;        ///< s
-  bool is_first = false; ///< true if the dependence on time begins there; false if its magnitude exceeds all earlier ones
+  bool is_first = false; ///< true: the formula is constant before t; false: its magnitude exceeds all earlier ones
 };
 
 // Largest magnitudes of an element's channels.
@@ -142,7 +144,7 @@ std::optional<LateEffect> late_look(AtOtherTimes& at, double end) {
   for (int i = 1; i <= k_samples; ++i) look(end * (1.0 + (k_near - 1.0) * (i - golden(i)) / k_samples));
   for (int i = 1; i <= k_samples; ++i)
     look(end * portable::pow(10.0, portable::log10(k_near) + portable::log10(k_behind / k_near) * i / k_samples));
-  // A force that grows up to the last sample, such as c t, has no full size that a run could reach. Its end is the end of the run.
+  // A force that grows up to the last sample, such as c t, has no full size that a run could reach, so only a late beginning is reported.
   if (behind.are_exceeded_by(far_behind.largest())) return begins;
   return begins ? begins : grows;
 }
@@ -163,7 +165,7 @@ std::vector<Finding> late_formulas(const LoadedModel& loaded, const RunResult& r
                           "the formula of '" + entry.element->name + "' " + what + " t = " + rounded_text(late->t, 3) +
                               " s, but the run ends at " + number_text(end) + " s: what it does then is not judged",
                           entry.element->where});
-    } catch (const NumericalFailure&) { // the formula cannot be evaluated at another time
+    } catch (const NumericalFailure&) { // the formula has no value at other times
     }
   }
   return findings;

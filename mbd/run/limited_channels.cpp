@@ -19,7 +19,7 @@ void add_stated(const Criterion& criterion, const RunResult& result, std::vector
   }
 }
 
-// Adds the limit of an element's own criterion. It is an upper limit if the value closest to it is below.
+// Adds the limit of an element's own criterion. It is an upper limit if the value nearest to it is below.
 void add_of_element(const CriterionResult& criterion, const RunResult& result, std::vector<LimitedChannel>& limited) {
   if (!criterion.value || !criterion.limit) return;
   for (std::size_t c = 0; c < result.ranges.size(); ++c) {
@@ -37,7 +37,7 @@ double ReserveHistory::reserve(std::size_t i, double t) const {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const ExtremesSoFar& then : result_.growth) {
     if (then.t > t) break;
-    low = std::fmin(low, then.range[c].first); // including earlier legs
+    low = std::fmin(low, then.range[c].first); // running extremes of earlier legs
     high = std::fmax(high, then.range[c].second);
   }
   return limited_[i].reserve(low, high);

@@ -17,10 +17,10 @@ namespace steplap {
 struct LimitedChannel {
   std::string criterion;                                    ///< name of the criterion
   std::size_t channel = 0;                                  ///< index in RunResult::ranges
-  double least = -std::numeric_limits<double>::infinity();  ///< in the channel's unit
-  double largest = std::numeric_limits<double>::infinity(); ///< in the channel's unit
+  double least = -std::numeric_limits<double>::infinity();  ///< lower limit, in the channel's unit
+  double largest = std::numeric_limits<double>::infinity(); ///< upper limit, in the channel's unit
 
-  /// Returns the distance from the range [low, high] to the nearer limit; negative beyond it.
+  /// Returns the distance, in the channel's unit, from the range [low, high] to the nearer limit; negative beyond the limit.
   [[nodiscard]] double reserve(double low, double high) const { return std::min(low - least, largest - high); }
 };
 
@@ -30,11 +30,11 @@ public:
   /// Keeps a reference to `result`.
   ReserveHistory(const RunResult& result, std::vector<LimitedChannel> limited) : result_(result), limited_(std::move(limited)) {}
 
-  /// Number of criteria; 0 if the run recorded no running extremes.
+  /// Returns the number of criteria; 0 if the run recorded no running extremes.
   [[nodiscard]] std::size_t count() const { return result_.growth.empty() ? 0 : limited_.size(); }
   /// Returns limit i.
   [[nodiscard]] const LimitedChannel& limited(std::size_t i) const { return limited_[i]; }
-  /// Returns the reserve of criterion i at the last recorded time before t, s.
+  /// Returns the reserve of criterion i, in the channel's unit, at the last recorded time before t, s.
   [[nodiscard]] double reserve(std::size_t i, double t) const;
   /// Returns the reserve of criterion i at the start.
   [[nodiscard]] double first_reserve(std::size_t i) const;
@@ -44,7 +44,7 @@ private:
   std::vector<LimitedChannel> limited_;
 };
 
-/// Returns all limits of criteria that hold and have values; none if the run recorded no extremes.
+/// Returns the limits of all criteria that are met and have values; none if the run recorded no extremes.
 [[nodiscard]] std::vector<LimitedChannel> limited_channels(const Model& model, const RunResult& result, const Judgement& judgement);
 
 } // namespace steplap

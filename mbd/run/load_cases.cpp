@@ -38,7 +38,8 @@ SharedModel load_case(const LoadCase& one, const std::string& text, const std::s
   }
 }
 
-// Calls work(i) for all i < count, each once, on as many threads as there are processors. Throws the first exception of the lowest i.
+// Calls work(i) once for each i < count, on as many threads as there are processors. If calls throw, rethrows the exception of the lowest
+// i.
 template <class Work> void for_each_in_parallel(std::size_t count, const Work& work) {
   std::atomic<std::size_t> next = 0;
   std::vector<std::exception_ptr> thrown(count);
@@ -59,7 +60,7 @@ template <class Work> void for_each_in_parallel(std::size_t count, const Work& w
     if (exception) std::rethrow_exception(exception);
 }
 
-// Criteria of elements come first in a judgement, those of the model last.
+// Returns the limit of each criterion. A judgement lists criteria of elements first, then criteria of the model.
 std::vector<CaseLimit> limits_of(const Report& report, const std::vector<Utilisation>& utilisations) {
   const std::vector<CriterionResult>& criteria = report.judgement.criteria;
   const std::size_t of_elements = criteria.size() - report.run.loaded->model.criteria.size();
@@ -91,7 +92,7 @@ void run_case(const SharedModel& loaded, const RunOptions& options, const CaseRe
     result.reason = overview.reason;
     result.failure = report.run.failure ? report.run.failure->text : "";
     result.limits = limits_of(report, overview.utilisations);
-  } catch (const NumericalFailure& failure) { // the run could not even start
+  } catch (const NumericalFailure& failure) { // the run could not start
     result.judgement.verdict = Verdict::open;
     result.reason = result.failure = failure.what();
   }
@@ -145,7 +146,7 @@ std::string LoadCaseResults::reason() const {
 
 LoadCaseResults run_load_cases(const std::string& path, const std::vector<std::string>& overrides, const RunCatalogue& catalogue,
                                const RunOptions& options, const CaseReading& reading) {
-  const std::string text = read_input(path, {}); // once, so that all cases are of the same file
+  const std::string text = read_input(path, {}); // read once, so that all cases use the same text
   LoadCaseResults results{{load_model_text(text, shown_input(path), overrides, catalogue)}, {}};
   const Model& model = results.models.front()->model;
   const std::vector<LoadCase> cases = load_cases_of(model);

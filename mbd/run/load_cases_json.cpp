@@ -17,7 +17,7 @@ OrderedJson limit_json(const CaseLimit& limit) {
                    {"utilisation", number(limit.share)},
                    {"margin", number(limit.result.reserve)},
                    {"unit", limit.result.unit}};
-  if (limit.share_error) json["utilisation_error"] = number(limit.share_error); // null: unknown
+  if (limit.share_error) json["utilisation_error"] = number(limit.share_error); // null if the error is unknown
   return json;
 }
 

@@ -21,7 +21,7 @@ namespace steplap {
 
 namespace {
 
-// Returns "wagon" for "models/wagon.toml". A name that consists of dots would denote another folder; it keeps its extension.
+// Returns "wagon" for "models/wagon.toml". A name that consists of dots keeps its extension, because it would denote another folder.
 std::string name_of_model(const std::string& path) {
   if (has_control_character(path))
     throw FileError(path, "the name '" + shown(path) + "' of a model file holds control characters: rename the file");
@@ -31,7 +31,7 @@ std::string name_of_model(const std::string& path) {
   return stem.find_first_not_of('.') == std::string::npos ? file.filename().string() : stem;
 }
 
-// Throws if the trajectory would be too long: a step in a wrong unit could fill the disk.
+// Throws if the trajectory would be too long, because a step in a wrong unit could fill the disk.
 void refuse_endless_output(const Model& model, const System& system) {
   const double numbers = trajectory_numbers(model, system);
   if (!(numbers > model.output.most_numbers)) return;
@@ -53,7 +53,7 @@ double trajectory_numbers(const Model& model, const System& system) {
 
 namespace {
 
-// Reports joints that cannot be assembled as errors of the model.
+// Assembles the joints. If this is impossible, the error is reported as an error of the model.
 void put_together(LoadedModel& loaded) {
   refuse_endless_output(loaded.model, *loaded.system);
   loaded.plots_left_out = check_presentation(loaded.model, *loaded.system);
@@ -68,7 +68,7 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std
   loaded->path = shown_input(path);
   loaded->name = name_of_model(path);
   loaded->overrides = overrides;
-  const InputFiles read; // must exist until the signals are built
+  const InputFiles read; // must outlive the signals that are built here
   loaded->views = catalogue.views;
   loaded->model = read_model(path, catalogue, overrides, &loaded->text);
   loaded->system = compile(loaded->model);
@@ -128,11 +128,12 @@ std::vector<std::shared_ptr<const LoadedModel>> load_models(const std::vector<st
 
 namespace {
 
-// Runs `work`. If no equilibrium is found, the error gets its location in the model file and the names of parts that tip in the given pose.
+// Calls `work`. If no equilibrium is found, adds the location in the model file to the error, and the names of parts that tip in the given
+// pose.
 template <class Work> auto placed(const LoadedModel& loaded, const Work& work) {
   try {
     return work();
-  } catch (const RunStopped&) { // the search was interrupted, so nothing is known about the pose
+  } catch (const RunStopped&) { // interrupted search: the pose is not examined
     throw;
   } catch (const NumericalFailure& failure) {
     std::string text = failure_of(failure, loaded.model, *loaded.system, 0.0).text;

@@ -15,15 +15,15 @@ namespace steplap {
 
 /// A model ready to run. It is constant, so runs in several threads may share it.
 struct LoadedModel {
-  std::string path;                                                             ///< as given
+  std::string path;                                                             ///< path of the model file, as given
   std::string name;                                                             ///< file name without folder and extension
   std::vector<std::string> overrides;                                           ///< "path=value" settings applied to the file
   std::string text;                                                             ///< effective model as self-contained TOML
   std::vector<InputFile> inputs;                                                ///< all files that were read
-  Model model;                                                                  ///< completed
+  Model model;                                                                  ///< model with all defaults filled in
   std::vector<std::string> plots_left_out;                                      ///< requested plots whose channels are not written
-  std::shared_ptr<const System> system;                                         ///< compiled from `model`; shared with every run of it
-  std::shared_ptr<const KindViews> views = std::make_shared<const KindViews>(); ///< answers of the kinds; never null
+  std::shared_ptr<const System> system;                                         ///< system compiled from `model`; shared by all runs of it
+  std::shared_ptr<const KindViews> views = std::make_shared<const KindViews>(); ///< functions of the kinds; never null
   State assembled; ///< initial state after projection of the given poses and velocities onto the constraints
 };
 

@@ -16,7 +16,7 @@ constexpr int k_most_digits = 12;
 constexpr int k_digits_of_unknown = 3;
 
 std::string digit_text(const DecimalDigit& d) {
-  constexpr int k_longest = 4; // 0.0003, but 3e-5
+  constexpr int k_longest = 4; // largest magnitude of the exponent that is written without "e": 0.0003, but 3e-5
   if (d.exponent >= -k_longest && d.exponent <= k_longest) return rounded_at(d.digit * power_of_ten(d.exponent), std::min(0, d.exponent));
   return std::to_string(d.digit) + "e" + std::to_string(d.exponent);
 }

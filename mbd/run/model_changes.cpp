@@ -77,7 +77,7 @@ private:
     changes_.push_back(std::move(change));
   }
 
-  // Compares formulas by name: the same formula is no change, whatever its value.
+  // Compares formulas by name: a value with the same formula in both models is not a change.
   void compare_parameters() {
     const Parameters &before = a_.parameters, &after = b_.parameters;
     for (std::size_t i = 0; i < before.entries.size(); ++i) {
@@ -151,7 +151,7 @@ private:
     change.path = path;
     change.before = number_in(a);
     change.after = number_in(b);
-    if ((change.before || change.after) && unit != "*") change.unit = unit; // any unit, as for signals
+    if ((change.before || change.after) && unit != "*") change.unit = unit; // fields with the unit "*" accept any unit
     change.before_text = text_of(a);
     change.after_text = text_of(b);
     change.follows = !formula_at(a_, path).empty() && formula_at(a_, path) == formula_at(b_, path);

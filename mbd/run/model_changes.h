@@ -18,7 +18,7 @@ struct ModelChange {
   std::string unit;                    ///< SI unit of the numbers
   std::optional<double> before, after; ///< numbers; empty if the value is not a number or not given
   std::string before_text, after_text; ///< values as text; "" if not given
-  bool follows = false;                ///< true if both models compute it from the same formula of parameters
+  bool follows = false;                ///< both models compute the value from the same formula of parameters
 };
 
 /// Returns the changes from `a` to `b`, both as given (mbd/io/reader.h): parameters first, then in the order of the files. A default that

@@ -2,7 +2,7 @@
 
 namespace steplap {
 
-// Markers created for references to bodies are named in the fields that created them.
+// Markers that the reader created for references to bodies are omitted; the fields that refer to bodies contain their names.
 std::vector<ModelEntry> entries_of(const Model& model) {
   std::vector<ModelEntry> entries{{"", "", &ModelHeader::fields(), nullptr, &model.header},
                                   {"simulation", "", &SimulationSettings::fields(), nullptr, &model.simulation},

@@ -75,11 +75,11 @@ Finding still_grows(const Model& model, const std::string& criterion, const std:
           where_of(model, criterion)};
 }
 
-// Returns the time in which the worst value of criterion i reaches its limit at the rate of the last eighth of a run of length `end`, s.
-// Returns nothing if the value did not grow in each eighth of the second half, or if its growth slows down.
+// Returns the time, s, in which the worst value of criterion i reaches its limit at the rate of the last eighth of a run of length `end`,
+// s. Returns nothing if the value did not grow in each eighth of the second half, or if its growth slows down.
 std::optional<double> builds_up_in(const ReserveHistory& history, std::size_t i, double end) {
   constexpr int k_parts = 8;
-  constexpr double k_steady = 0.5; // relative to the growth in the earlier eighths
+  constexpr double k_steady = 0.5; // least growth of the last eighth, relative to the growth in the earlier ones
   double before = history.reserve(i, 0.5 * end), grown = 0.0, last = 0.0;
   for (int part = k_parts / 2 + 1; part <= k_parts; ++part) {
     const double left = history.reserve(i, part == k_parts ? std::numeric_limits<double>::infinity() : end * part / k_parts);
@@ -96,7 +96,7 @@ std::optional<double> builds_up_in(const ReserveHistory& history, std::size_t i,
 
 namespace {
 
-// Returns the second derivative at the end of a coordinate of a body, such as "box.x", where it makes the rate grow; else 0.
+// Returns the final second derivative of a coordinate of a body, such as "box.x", if it increases the magnitude of the rate; otherwise 0.
 double growing_acceleration(const RangeIndex& ranges, const ChannelRange& range) {
   const std::string& name = range.channel->name;
   for (const auto& [coordinate, acceleration] : {std::pair{".x", ".ax"}, {".y", ".ay"}, {".theta", ".alpha"}}) {
@@ -110,7 +110,7 @@ double growing_acceleration(const RangeIndex& ranges, const ChannelRange& range)
 } // namespace
 
 std::vector<Finding> growing_criteria(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
-  constexpr double k_still_worst = 1e-6; // relative to the range; extremes are located to this accuracy
+  constexpr double k_still_worst = 1e-6; // tolerance relative to the range: accuracy of extremes
   const double length = result.final_state.t;
   std::vector<Finding> findings;
   std::unordered_set<std::string> known;
@@ -148,7 +148,7 @@ std::vector<Finding> growing_criteria(const LoadedModel& loaded, const RunResult
 
 std::vector<Finding> open_at_end(const LoadedModel& loaded, const RunResult& result) {
   const Model& model = loaded.model;
-  if (model.criteria.empty()) return {}; // there are no criteria
+  if (model.criteria.empty()) return {}; // without criteria nothing is judged
   const RangeIndex ranges(result.ranges);
   std::vector<std::string> slip, are_open;
   for (const ElementEntry& entry : model.elements) {
@@ -174,10 +174,11 @@ std::vector<Finding> open_at_end(const LoadedModel& loaded, const RunResult& res
 
 namespace {
 
-// Sets of bodies connected by elements, and bodies named by criteria, forces and drives.
+// Union-find structure of bodies connected by elements. Bodies named by criteria, forces and drives are connected with the ground.
 class Carriers {
 public:
-  // `asks`: bodies named by criteria count as carried. Determining these is slow and is needed only if some body is not carried otherwise.
+  // `asks`: bodies named by criteria count as carried, too. Finding them is slow, so this is requested only if some body is not carried
+  // otherwise.
   Carriers(const Model& model, const RunResult& result, bool asks) : model_(model), result_(result), asks_(asks) {
     for (const Body& body : model.bodies)
       if (!body.fixed) place_[body.name] = static_cast<int>(parent_.size()), parent_.push_back(static_cast<int>(parent_.size()));
@@ -198,7 +199,7 @@ public:
   bool is_carried(const Body& body) { return body.fixed || root(of(body.name)) == root(0); }
 
 private:
-  [[nodiscard]] int of(const std::string& name) const { // 0: the ground, and bodies that never move
+  [[nodiscard]] int of(const std::string& name) const { // index in parent_; 0 for the ground and bodies that never move
     const auto found = place_.find(name);
     return found == place_.end() ? 0 : found->second;
   }
@@ -221,7 +222,7 @@ private:
     for (const std::string& name : names_in_formulas(entry)) join_named(name);
     if (const ChannelRange* const force = force_of_contact(ranges, element.name);
         force && force->low.value == 0.0 && force->high.value == 0.0)
-      return; // it never closed
+      return; // the contact never closed
     std::vector<int> bodies;
     for (const Field& field : entry.kind->fields.fields()) {
       if (field.type == FieldType::marker || field.type == FieldType::body)
@@ -239,7 +240,7 @@ private:
   const Model& model_;
   const RunResult& result_;
   bool asks_;
-  std::unordered_map<std::string, int> place_; ///< by body and marker
+  std::unordered_map<std::string, int> place_; ///< index in parent_, by name of body or marker
   std::vector<int> parent_{0};                 ///< union-find forest: each tree is a set of connected bodies
 };
 

@@ -7,7 +7,7 @@ namespace steplap {
 
 namespace {
 
-// Builds a document from the events of the parser.
+// Builds a document from the callbacks of the parser.
 class Builder final : public nlohmann::json_sax<OrderedJson> {
 public:
   explicit Builder(OrderedJson& root) : root_(root) {}
@@ -51,8 +51,8 @@ private:
   }
 
   OrderedJson& root_;
-  std::vector<OrderedJson*> open_; ///< from the root inwards; each is the last entry of the previous one, whose size does not change
-                                   ///< meanwhile
+  /// Containers being filled, from the root inwards; each is the last entry of the previous one, whose size does not change meanwhile.
+  std::vector<OrderedJson*> open_;
   std::string name_;
 };
 

@@ -12,8 +12,8 @@ namespace steplap {
 /// A JSON object that keeps the order of its entries.
 using OrderedJson = nlohmann::ordered_json;
 
-/// Returns an empty object with capacity for `entries`. Without this capacity the object is copied at each doubling, because the library cannot move
-/// entries with constant names.
+/// Returns an empty object with capacity for `entries`. Without capacity the library copies the object at each doubling, because it cannot
+/// move entries with constant names.
 [[nodiscard]] OrderedJson object_with_room(std::size_t entries);
 
 /// Appends an entry. Precondition: the object has no entry of that name.

@@ -13,8 +13,8 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_large_error = 0.01;       // of a channel's range; larger errors limit the trust in a number
-constexpr std::size_t k_longest_quote = 160; // characters of a quoted message
+constexpr double k_large_error = 0.01;       // largest error, relative to the range of a channel, that does not limit the trust
+constexpr std::size_t k_longest_quote = 160; // largest number of characters of a quoted message
 
 // Returns the first sentence of a message, shortened if it is long.
 std::string first_sentence(const std::string& text) {
@@ -106,13 +106,13 @@ private:
         if (entry.what == StorySubject::slips && entry.who.size() == 1 && entry.who.front() == joint->joint && entry.amount) {
           const std::string slid =
               shown_quantity(entry.amount->value, "m", {.error = entry.amount->error, .scale = k_least_length_scale}, digits_);
-          if (slid.starts_with("0 ")) continue; // it rotates in place
+          if (slid.starts_with("0 ")) continue; // the corner rotates in place
           return "Joint " + quoted(joint->joint) + " slips at " + time(*joint->first_slip) + " and slides " + slid + ".";
         }
       return "Joint " + quoted(joint->joint) + " slips at " + time(*joint->first_slip) + ".";
     }
     const std::string at = c.t ? " at " + time(*c.t) : "";
-    for (const StoryEntry& entry : overview_.story) // for ties
+    for (const StoryEntry& entry : overview_.story) // reason for a tie: it broke
       if (entry.what == StorySubject::breaks && c.name == c.where && entry.who.front() == c.where)
         return sentence_name(c.where) + " breaks" + at + ".";
     if (c.value && c.limit) {
@@ -178,7 +178,7 @@ std::vector<std::string> channels_without_error(const Report& report) {
 
 // Formats an error, rounded up: "3 N", "better than 1 µm".
 std::string error_text(double error, const std::string& unit) {
-  const double floor = unit == "N" ? 1e-3 : unit == "m" ? 1e-9 : 1e-9; // mN, nm, ns: more accuracy is never required
+  const double floor = unit == "N" ? 1e-3 : unit == "m" ? 1e-9 : 1e-9; // lowest error shown (mN, nm, ns): more accuracy is never required
   if (error <= floor) return "better than " + std::string(unit == "N" ? "1 mN" : unit == "m" ? "0.001 µm" : "0.001 µs");
   return shown_quantity(error, unit, {}, {.most = 1});
 }
@@ -213,7 +213,8 @@ Trust trust_by_errors(const Report& report) {
   const double worst = estimate.error.of(ErrorKind::position).value;
   const WorstError& reaction = estimate.error.of(ErrorKind::reaction);
   const bool has_large = worst > k_large_error || reaction.value > k_large_error;
-  if (has_large && !is_at_rest(report.run)) trust.level = TrustLevel::limited; // at rest there is no range to which errors could be related
+  // at rest no channel has a range to which errors could be related
+  if (has_large && !is_at_rest(report.run)) trust.level = TrustLevel::limited;
   if (const std::vector<std::string> names = channels_without_error(report); !names.empty()) {
     trust.level = TrustLevel::limited;
     trust.text += names.size() == 1 ? " That of " + quoted(names.front()) + " is not known."
@@ -231,7 +232,7 @@ std::string second_method(const SecondOpinion& second) {
   return second.method.substr(0, second.method.find_first_of(" @")) + (second.drawn_step > 0.0 ? " in steps drawn at random" : "");
 }
 
-// Returns the checks that were made, whatever their result. Checks made by a method at each of its steps are counted as one.
+// Returns the names of the checks that were made, whatever their result. All checks that a method makes at each step count as one.
 std::vector<std::string> guards_of(const Report& report) {
   std::vector<std::string> guards = {"energy balance"};
   if (!report.run.loaded->system->rows.empty()) guards.emplace_back("joints");

@@ -15,8 +15,8 @@ namespace steplap {
 /// Reliability of the numbers of a run.
 enum class TrustLevel {
   good,    ///< errors are estimated and small
-  limited, ///< errors are unknown, or large somewhere
-  none     ///< the run ended early, or contradicts itself
+  limited, ///< errors are unknown, or large in some channel
+  none     ///< the run ended early, or its checks failed
 };
 
 /// Returns "good", "limited" or "none".
@@ -31,13 +31,14 @@ struct Trust {
 
 /// Summary of a run that fits on one screen.
 struct Overview {
-  Verdict verdict = Verdict::open;       ///< verdict of the judgement; open if there are no criteria
-  bool is_judged = false;                ///< true if there is a verdict: criteria exist, or the run is unreliable
-  std::string reason;                    ///< reason of the verdict, one sentence
-  Trust trust;                           ///< reliability of the numbers
-  std::optional<double> worst_instant;   ///< time of the highest utilisation among judged criteria, s; among all limits if there are none
+  Verdict verdict = Verdict::open; ///< verdict of the judgement; open if there are no criteria
+  bool is_judged = false;          ///< true if there is a verdict: criteria exist, or the run is unreliable
+  std::string reason;              ///< reason of the verdict, one sentence
+  Trust trust;                     ///< reliability of the numbers
+  /// Time of the highest utilisation, s, among judged criteria; among all limits if there are no criteria.
+  std::optional<double> worst_instant;
   std::vector<StoryEntry> story;         ///< events in order of time
-  std::vector<Utilisation> utilisations; ///< highest first
+  std::vector<Utilisation> utilisations; ///< sorted, highest first
   std::vector<std::string> moved;        ///< elements that slipped, opened or broke
 };
 

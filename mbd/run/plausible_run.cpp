@@ -20,10 +20,10 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_moved_share = 0.01; // of a body's size; settling on springs is smaller
-constexpr double k_turned = 0.05;      // rad; three degrees are visible in a drawing
+constexpr double k_moved_share = 0.01; // displacement in body sizes; settling on springs is smaller
+constexpr double k_turned = 0.05;      // rotation, rad; three degrees are visible in a drawing
 constexpr double k_far_limit = 1e3;    // ratio between metres and millimetres
-constexpr double k_outside = 0.01;     // of the outer part's width; a body on an edge is not beyond it
+constexpr double k_outside = 0.01;     // tolerance relative to the width of the outer part, for a body on an edge
 
 bool is_number(const std::string& text) {
   double value = 0.0;
@@ -32,7 +32,7 @@ bool is_number(const std::string& text) {
   return error == std::errc() && last == end;
 }
 
-double signed_distance(const Vec2& p, const Vec2& from, const Vec2& to) { // positive to the left of the line
+double signed_distance(const Vec2& p, const Vec2& from, const Vec2& to) { // signed distance of p from the line, positive on its left side
   const Vec2 along = to - from;
   return (along.x() * (p - from).y() - along.y() * (p - from).x()) / along.norm();
 }
@@ -51,14 +51,14 @@ std::vector<Vec2> hull_of(std::vector<Vec2> points) {
       }
       hull.push_back(*p);
     }
-    hull.pop_back(); // it is the first point of the other chain
+    hull.pop_back(); // first point of the other chain
   };
   add_chain(points.begin(), points.end());
   add_chain(points.rbegin(), points.rend());
   return hull;
 }
 
-// Returns the distance of p inside the nearest edge line of the hull; negative outside.
+// Returns the distance of p from the nearest edge of the hull, m; negative outside.
 double depth_in(const std::vector<Vec2>& hull, const Vec2& p) {
   double depth = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < hull.size(); ++i) depth = std::min(depth, signed_distance(p, hull[i], hull[(i + 1) % hull.size()]));
@@ -69,7 +69,7 @@ double depth_in(const std::vector<Vec2>& hull, const Vec2& p) {
 struct Part {
   const Body* body = nullptr;
   std::vector<Vec2> corners, hull;
-  double width = 0.0; ///< larger side of the hull's bounding box, m
+  double width = 0.0; ///< diagonal of the bounding box, m
   bool is_guided = false;
 };
 
@@ -123,7 +123,7 @@ std::vector<Finding> far_rest(const LoadedModel& loaded, const RunResult& result
   const std::vector<double> reaches = body_reaches(model);
   const RangeIndex ranges(result.ranges);
   const Body* worst = nullptr;
-  double most = 1.0, way = 0.0, turn = 0.0; // `most`: largest ratio to the permitted motion
+  double most = 1.0, way = 0.0, turn = 0.0; // most: largest ratio of a body's motion to the permitted one; way, turn: motion of this body
   std::size_t count = 0;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const Body& body = model.bodies[i];
@@ -170,12 +170,12 @@ std::vector<Finding> far_limits(const LoadedModel& loaded, const RunResult& resu
       if (matches_pattern(range.channel->name, criterion.channel)) own = std::max(own, size_of(range));
       if (range.channel->unit == judged.unit) any = std::max(any, size_of(range));
     }
-    // Considers the largest limit that is given without unit. A limit such as "20 mm" is assumed to be intended.
+    // Only limits given without a unit are considered; a limit such as "20 mm" is intended.
     double limit = 0.0;
     if (criterion.within && is_number(criterion.within_text)) limit = *criterion.within;
     if (criterion.at_most && is_number(criterion.at_most_text)) limit = std::max(limit, *criterion.at_most);
     if (criterion.at_least && is_number(criterion.at_least_text)) limit = std::max(limit, -*criterion.at_least);
-    if (!(limit > k_far_limit * own) || !(limit > any) || !(any > 0.0)) continue; // without loads no comparison is possible
+    if (!(limit > k_far_limit * own) || !(limit > any) || !(any > 0.0)) continue; // without loads there is no value for comparison
     findings.push_back({"limit_far_beyond", FindingLevel::note,
                         "the limit of '" + criterion.name + "', " + quantity_text(limit, judged.unit) +
                             ", is more than a thousand times what '" + judged.channel + "' reached, " + quantity_text(own, judged.unit) +

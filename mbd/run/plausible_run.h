@@ -7,7 +7,7 @@
 
 namespace steplap {
 
-/// Returns a note if the run began in equilibrium and a body moved there by more than 0.01 of its size or 0.05 rad.
+/// Returns a note if the run began in equilibrium and a body moved by more than 0.01 of its size or 0.05 rad to reach it.
 [[nodiscard]] std::vector<Finding> far_rest(const LoadedModel& loaded, const RunResult& result);
 /// Returns a note for each criterion whose limit, given without a unit, is a thousand times larger than the largest value of its channel
 /// and larger than all values of that unit in the run: its unit may be wrong.

@@ -20,25 +20,28 @@ namespace steplap {
 
 namespace {
 
-// Larger than any transport. Positions of 1e6 m have a resolution of 0.2 nm, which is still rounding.
-constexpr double k_far = 1e6;  // m
-constexpr double k_fast = 1e4; // m/s
-// Numbers have sixteen digits. If values differ by more than this ratio, fewer than four digits remain for the smaller one.
+// Implausible positions and velocities, larger than in any transport. Positions of 1e6 m have a resolution of 0.2 nm, which is still
+// negligible.
+constexpr double k_far = 1e6;  // largest plausible coordinate, m
+constexpr double k_fast = 1e4; // largest plausible velocity, m/s
+// Largest plausible ratio between values of a kind. Numbers have sixteen digits, so beyond this ratio fewer than four digits of the smaller
+// one are significant.
 constexpr double k_apart = 1e12;
 
 // Coefficients of dry friction. Contacts of machines have 0.1 to 0.8, rubber 0.9 and more, clean metals in air up to 1.1.
 constexpr double k_high_friction = 0.8, k_implausible_friction = 1.2;
-constexpr double k_whole_turn = 2.0 * std::numbers::pi; // rad
+constexpr double k_whole_turn = 2.0 * std::numbers::pi; // largest plausible angle, rad
 
 Finding warning(const char* code, std::string text, const Location& where) { return {code, FindingLevel::warning, std::move(text), where}; }
 
-// Returns true if values and derivatives are zero at every breakpoint and between.
+// Returns true if the signal and its derivatives are zero at every breakpoint and between.
 bool is_zero(const Signal& signal, double end) {
   std::vector<double> times = {0.0, end};
   for (const double t : signal.breakpoints())
     if (t > 0.0 && t < end) times.push_back(t);
   std::sort(times.begin(), times.end());
-  constexpr int k_samples = 16; // a piece is a polynomial plus a few harmonics: with so many zeros it is zero everywhere
+  // a piece between breakpoints is a polynomial plus a few harmonics; with so many zeros it is zero everywhere
+  constexpr int k_samples = 16;
   for (std::size_t i = 0; i + 1 < times.size(); ++i)
     for (int k = 0; k <= k_samples; ++k)
       if (signal.value(times[i] + (times[i + 1] - times[i]) * (k + 0.37) / (k_samples + 1.0)) != 0.0) return false;
@@ -62,12 +65,12 @@ bool is_part(const Model& model, const std::string& name) {
   });
 }
 
-// Returns the first interval, s, in which rows of a record are missing, if its rows are evenly spaced with few exceptions. A row is missing
-// if a time step is at least 1.5 times the usual one; usual steps may differ by a tenth, because times are written with few digits. Gaps
-// with equal values on both sides are ignored, because recorders may omit repeated values.
+// Returns the first interval, s, in which rows of a record are missing; nothing if the rows are not evenly spaced apart from few
+// exceptions. A row is missing if a time step is at least 1.5 times the usual one; usual steps may differ by a tenth, because times are
+// written with few digits. Gaps with equal values on both sides are ignored, because recorders may omit repeated values.
 std::optional<std::pair<double, double>> missing_rows(const Signal& signal) {
   constexpr double k_alike = 0.1, k_missing = 1.5, k_few = 0.1;
-  constexpr std::size_t k_least = 8; // steps; fewer do not define a usual step
+  constexpr std::size_t k_least = 8; // least number of steps that define a usual step
   const std::vector<double>& t = signal.breakpoints();
   if (t.size() < k_least + 1) return {};
   std::vector<double> steps;
@@ -80,8 +83,7 @@ std::optional<std::pair<double, double>> missing_rows(const Signal& signal) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (std::abs(steps[i] - *middle) <= k_alike * *middle) continue;
     if (steps[i] < k_missing * *middle) return {};
-    if (i + 2 == t.size() || signal.value(t[i]) == signal.value(t[i + 1]))
-      continue; // after the last row the signal may be defined differently
+    if (i + 2 == t.size() || signal.value(t[i]) == signal.value(t[i + 1])) continue; // after the last row another definition may apply
     ++missing;
     if (!first) first = {t[i], t[i + 1]};
   }
@@ -112,7 +114,7 @@ template <class Value> std::pair<const Body*, const Body*> extremes_of(const Mod
   return {least, most};
 }
 
-// Checks dry friction of kinds that can state its origin.
+// Checks the coefficient of friction of kinds that have one.
 void check_friction(const ElementEntry& entry, std::vector<Finding>& findings) {
   if (!entry.kind->friction) return;
   const GivenFriction given = entry.kind->friction(*entry.element);
@@ -133,7 +135,7 @@ void check_friction(const ElementEntry& entry, std::vector<Finding>& findings) {
                                where));
 }
 
-// Returns true for numbers with at most three decimals. Degrees given without a unit are round numbers; radians from degrees or formulas
+// Returns true for numbers with at most three decimals. Angles in degrees that lack their unit are round; radians from degrees or formulas
 // are not.
 bool is_round(double number) {
   constexpr double k_places = 1e3;
@@ -190,8 +192,8 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
     if (!silent) silent = &entry;
     const std::vector<double>& breaks = signal->breakpoints();
     const auto next = std::upper_bound(breaks.begin(), breaks.end(), 0.0);
-    const bool begins_later = next != breaks.end() && *next >= end; // reported by acted_loads.h
-    if (!begins_later) // harmless if something else loads the machine; joints report this themselves
+    const bool begins_later = next != breaks.end() && *next >= end; // acted_loads.h reports signals that begin after the end
+    if (!begins_later) // reported only if no other load acts; joints report a missing load themselves
       findings.push_back(warning("load_is_zero", "signal '" + name + "' is zero throughout the run: what it drives is not loaded",
                                  entry.definition->where));
   }

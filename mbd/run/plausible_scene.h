@@ -6,15 +6,15 @@
 
 namespace steplap {
 
-/// Returns one finding for each signal that is zero throughout the run and for each record with gaps. Signals cut off by the end:
-/// acted_loads.h.
+/// Returns one finding for each signal that is zero throughout the run and for each record with gaps. acted_loads.h reports signals that
+/// the end cuts off.
 [[nodiscard]] std::vector<Finding> implausible_loads(const LoadedModel& loaded);
-/// Returns one finding for each contact element whose coefficient of friction, as the file or an action gives it, is unusually high for dry
-/// contacts: a note if the element gives a `source`, otherwise a warning. Above the highest value of any dry contact the warning also
+/// Returns one finding for each contact element whose coefficient of friction, given in the file or set by an action, is unusually high for
+/// dry contacts: a note if the element gives a `source`, otherwise a warning. Above the highest value of any dry contact the warning also
 /// prevents the verdict "hold".
 [[nodiscard]] std::vector<Finding> implausible_friction(const LoadedModel& loaded);
-/// Returns one finding for each group of positions, speeds, masses or inertias of too different size, and for each angle beyond a full
-/// turn.
+/// Returns one finding for each group of positions, velocities, masses or inertias of too different magnitude, and for each angle beyond a
+/// full turn.
 [[nodiscard]] std::vector<Finding> magnitude_warnings(const LoadedModel& loaded);
 
 } // namespace steplap

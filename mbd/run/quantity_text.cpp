@@ -21,7 +21,7 @@ bool takes_prefix(const std::string& unit) {
   return unit == "N" || unit == "N m" || unit == "J" || unit == "Pa" || unit == "m" || unit == "rad";
 }
 
-// Lengths are shown in millimetres, because steps and gaps are more frequent than sizes of machines.
+// Lengths are shown in millimetres, because displacements and gaps are more frequent than sizes of machines.
 UnitPrefix prefix_for(double value, const std::string& unit) {
   const double size = std::abs(value);
   if (!takes_prefix(unit)) return {};

@@ -5,7 +5,7 @@
 
 namespace steplap {
 
-/// An SI prefix.
+/// An SI prefix, for example "k" with exponent −3.
 struct UnitPrefix {
   int exponent = 0;      ///< power of ten by which the number is multiplied
   const char* text = ""; ///< "k", "M", …; "" for none
@@ -18,13 +18,13 @@ struct UnitPrefix {
 
 /// Returns six digits with a suitable prefix: 259822.17 N -> "259.822 kN", 7.9e-4 m -> "0.79 mm".
 [[nodiscard]] std::string quantity_text(double value, const std::string& unit);
-/// Relative to the scale of its kind: a smaller value is rounding, shown as zero.
+/// Values below this fraction of the scale of their kind are rounding and shown as zero.
 inline constexpr double k_shown_as_zero = 1e-9;
-/// As above, but a value below k_shown_as_zero `scale` is shown as zero.
+/// As quantity_text() above, but a value below k_shown_as_zero times `scale` is shown as zero.
 [[nodiscard]] std::string quantity_text(double value, const std::string& unit, double scale);
-/// Returns a time with microseconds: "0.085143".
+/// Returns a time, s, with microseconds: "0.085143".
 [[nodiscard]] std::string time_text(double t);
-/// Returns two digits, for residuals: "2.0e-07".
+/// Returns a number with two digits, for residuals: "2.0e-07".
 [[nodiscard]] std::string small_text(double value);
 
 } // namespace steplap

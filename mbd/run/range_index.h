@@ -10,16 +10,16 @@
 
 namespace steplap {
 
-/// Hash table of ranges. It refers to the ranges and their channels, which must outlive it.
+/// Hash table of channel ranges by name. Refers to the ranges and their channels, which must outlive it.
 class RangeIndex {
 public:
-  /// Takes the ranges of all channels of a run (RunResult::ranges).
+  /// `ranges`: those of all channels of a run (RunResult::ranges).
   explicit RangeIndex(const std::vector<ChannelRange>& ranges) {
     by_name_.reserve(ranges.size());
     for (const ChannelRange& range : ranges) by_name_.emplace(range.channel->name, &range);
   }
 
-  /// Returns nullptr if the channel does not exist or has no range.
+  /// Returns the range of a channel; nullptr if the channel does not exist or has no range.
   [[nodiscard]] const ChannelRange* find(const std::string& channel) const {
     const auto found = by_name_.find(channel);
     return found == by_name_.end() ? nullptr : found->second;

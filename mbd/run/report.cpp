@@ -18,7 +18,7 @@ const ChannelRange* Report::find(const std::string& channel) const {
   return nullptr;
 }
 
-// Ranges contain all channels, in their order.
+// The ranges contain all channels of the system, in its order; their index is that of the error.
 std::optional<double> Report::error_of(const ChannelRange& range, double ChannelError::*which) const {
   if (!estimate.errors) return {};
   return estimate.errors->channels[static_cast<std::size_t>(&range - ranges().data())].*which;
@@ -55,7 +55,8 @@ void Report::write(const std::string& folder, bool is_overwriting) const { write
 
 namespace {
 
-// Applies the error estimate to the verdict. If it failed the errors are unknown; if it was not requested the verdict is not affected.
+// Applies the error estimate to the verdict. A failed estimate makes the errors unknown; without a requested estimate the verdict is
+// unchanged.
 void weigh(Report& report) {
   const Run& run = report.run;
   if (report.estimate.errors) weigh_errors(report.judgement, run.loaded->model, *run.loaded->system, run.result, *report.estimate.errors);
@@ -67,14 +68,14 @@ void add_finding(Report& report, const Finding& finding, const RunOptions& optio
   report.findings.push_back(finding);
 }
 
-// Runs the second method if the verdict is "hold", the only one that it could weaken.
+// Runs the second method if the verdict is "hold", because only this verdict can change.
 void ask_second_opinion(Report& report, const RunOptions& options) {
   const bool is_stopped = options.stop && !options.stop().empty();
   if (!options.has_second_opinion || report.judgement.verdict != Verdict::hold || is_stopped) return;
   report.second_opinion = second_opinion(report.run, options);
   if (const std::string& what = report.second_opinion->disagreement; !what.empty())
     distrust(report.judgement, "a second method disagrees beyond both errors: " + what);
-  // The numbers must have been checked by the estimate or by the second method.
+  // A "hold" requires that the numbers were checked by the error estimate or by the second method.
   const std::string& none_because = report.second_opinion->none_because;
   if (none_because.empty() || report.estimate.errors) return;
   const std::string why = report.estimate.status == EstimateStatus::too_dear ? "would take long" : report.estimate.reason;
@@ -107,7 +108,7 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
     if (finding.code == "contact_too_deep") distrust(report.judgement, text_with_place(finding));
     else if (report.judgement.has_criteria && caps_verdict(finding)) add_cap(report.judgement, text_with_place(finding));
   }
-  if (!options.has_extremes) // events alone do not tell whether the capacity of a joint that cannot slip was exceeded
+  if (!options.has_extremes) // without extremes it is unknown whether the capacity of a monitored joint was exceeded
     add_cap(report.judgement, "extremes were not looked for, by which a run is judged and trusted");
   report.estimate = estimate_errors(report.run, options);
   if (report.estimate.balance) {

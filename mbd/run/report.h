@@ -15,7 +15,7 @@ namespace steplap {
 /// The trajectory as one matrix.
 struct Columns {
   std::vector<std::string> names, units; ///< "t" first, then the written channels
-  MatX values;                           ///< SI; one row per sample, one column per name
+  MatX values;                           ///< SI values; one row per sample, one column per name
 };
 
 /// All results of one run, made by judged_run() or report_on().
@@ -24,25 +24,25 @@ struct Report {
   Estimate estimate;                           ///< estimated errors, or the reason why there are none
   Judgement judgement;                         ///< the verdict and its criteria
   std::vector<JointAssessment> joints;         ///< results of joints that are held by friction, in the order of the model
-  std::vector<Finding> findings;               ///< findings before and after the run; those that prevent "hold" are in the judgement, too
+  std::vector<Finding> findings;               ///< findings before and after the run; those that prevent "hold" are also in the judgement
   std::optional<SecondOpinion> second_opinion; ///< result of a second method, if requested
   std::map<std::string, long> event_counts;    ///< number of events by kind
-  double relative_energy_residual = 0.0;       ///< relative to the energy exchanged
+  double relative_energy_residual = 0.0;       ///< energy residual relative to the energy converted
 
   /// Returns the ranges of all channels of the system, written or not (mbd/simulation/extremes.h).
   [[nodiscard]] const std::vector<ChannelRange>& ranges() const { return run.result.ranges; }
-  /// Returns nullptr if there is no such channel.
+  /// Returns the range of a channel; nullptr if there is no such channel.
   [[nodiscard]] const ChannelRange* find(const std::string& channel) const;
-  /// Returns the estimated error of a range; empty without an estimate.
+  /// Returns the estimated error of a range (`which`: minimum, maximum, …); empty without an estimate.
   [[nodiscard]] std::optional<double> error_of(const ChannelRange& range, double ChannelError::*which) const;
-  /// Returns the error of the time of event i, s.
+  /// Returns the estimated error of the time of event i, s; empty without an estimate.
   [[nodiscard]] std::optional<double> event_error(std::size_t i) const;
   /// Returns the error of the dissipated energy, J; empty without an estimate.
   [[nodiscard]] std::optional<double> dissipated_error() const;
   /// Returns the error of the work of loads and drives, J; empty without an estimate.
   [[nodiscard]] std::optional<double> work_error() const;
 
-  /// Returns all samples as one matrix, which takes memory for rows × names numbers.
+  /// Returns all samples as one matrix. It holds rows × names numbers in memory.
   [[nodiscard]] Columns columns() const;
   /// Returns the text of summary.json, except for the list of files that is added when it is written.
   [[nodiscard]] std::string json() const;
@@ -51,9 +51,9 @@ struct Report {
 };
 
 /// Runs the model with the settings of `options` and evaluates the run. Throws ModelError if these settings are invalid (with_settings.h),
-/// NumericalFailure if the run could not even start.
+/// NumericalFailure if the run cannot start.
 [[nodiscard]] Report judged_run(std::shared_ptr<const LoadedModel> loaded, const RunOptions& options = {});
-/// Evaluates a run that was made with `options`. `before` are the findings on its model.
+/// Evaluates a run that was made with `options`. `before`: findings on its model.
 [[nodiscard]] Report report_on(Run run, std::vector<Finding> before, const RunOptions& options);
 
 } // namespace steplap

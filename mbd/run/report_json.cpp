@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Appends the last entry, a checksum of the text before it.
+// Text around the checksum of the text before it, the last entry of the summary.
 constexpr std::string_view k_before_checksum = ",\n  \"checksum\": \"", k_after_checksum = "\"\n}\n";
 
 Json inputs_json(const std::vector<InputFile>& inputs) {
@@ -121,7 +121,7 @@ Json method_json(const SimulationOptions& options) {
   return {{"integrator", options.integrator}, {"step", options.settings.step}, {"tolerance", options.settings.tolerance}};
 }
 
-// Errors are scaled as in mbd/trust/run_comparison.h.
+// Errors are relative to the scales of mbd/trust/run_comparison.h.
 Json global_error_json(const Report& report) {
   const GlobalErrorEstimate& estimate = *report.estimate.errors;
   Json json;
@@ -139,7 +139,7 @@ Json global_error_json(const Report& report) {
   return json;
 }
 
-// Stores each text once and its index for every channel, because there are only few different texts.
+// Stores each text once, and for every channel the index of its text, because there are only few different texts.
 class Meanings {
 public:
   [[nodiscard]] std::size_t place_of(const Channel& channel) {
@@ -171,9 +171,9 @@ Json extremes_json(const Report& report, Meanings& meanings) {
     entry["t_max"] = time(range.high);
     add_number(entry, "final", range.final);
     if (range.channel->is_on_request) entry["on_request"] = true;
-    if (range.is_low_singular) entry["min_singular"] = true; // at a singular pose, near which reactions may diverge
+    if (range.is_low_singular) entry["min_singular"] = true; // the extreme is near a singular position, where reactions may diverge
     if (range.is_high_singular) entry["max_singular"] = true;
-    if (range.had_no_value && range.channel->is_on_request) entry["had_no_value"] = true; // division by zero in a formula
+    if (range.had_no_value && range.channel->is_on_request) entry["had_no_value"] = true; // the formula divided by zero
     const auto add = [&](const char* key, double ChannelError::*which) { add_error(entry, key, report.error_of(range, which)); };
     add("error_min", &ChannelError::low);
     add("error_t_min", &ChannelError::t_low);
@@ -201,7 +201,7 @@ void add_errors(Json& entry, const JointAssessment& a, const JointErrors& e) {
   if (a.allowed_line_load) entry["error_largest_edge_share"] = number_json(e.edge_share);
 }
 
-// Adds the results for edges in contact, if the joint has edges. The margin is infinite (null) while no edge carries load.
+// Adds the results for sheet edges in contact, if the joint has edges. The margin is infinite (null) while no edge carries load.
 void add_edges(Json& entry, const JointAssessment& a) {
   if (!a.has_edges) return;
   entry["largest_edge_load"] = number_json(a.edge_load.value);
@@ -361,7 +361,8 @@ OrderedJson judgement_json(const Judgement& judgement) {
                         {"error_t", optional(c.t_error)},
                         {"doubt", c.doubt}});
     if (c.value) note_infinity(criteria.back(), "value", *c.value);
-    if (c.error && !std::isfinite(*c.error)) criteria.back()["error_is"] = "unknown"; // without this entry null means: not estimated
+    // Distinguishes an unknown error from one that was not estimated, which is null, too.
+    if (c.error && !std::isfinite(*c.error)) criteria.back()["error_is"] = "unknown";
     if (c.t_error && !std::isfinite(*c.t_error)) criteria.back()["error_t_is"] = "unknown";
   }
   return {{"verdict", name_of(judgement.verdict)},
@@ -374,7 +375,7 @@ OrderedJson judgement_json(const Judgement& judgement) {
 OrderedJson summary_head(const Report& report, ShownDigits digits) {
   const Run& run = report.run;
   const LoadedModel& loaded = *run.loaded;
-  Json json = object_with_room(32); // includes the entries of summary_document()
+  Json json = object_with_room(32); // capacity includes the entries that summary_document() adds
   json["program"] = {{"name", "steplap"}, {"version", k_version}};
   json["model"] = model_json(loaded);
   json["overview"] = overview_json(overview_of(report, digits), digits);

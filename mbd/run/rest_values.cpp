@@ -9,7 +9,7 @@ namespace steplap {
 
 namespace {
 
-// Holds drives at their positions at `state` during its lifetime.
+// During its lifetime drives hold their positions at `state`.
 class HeldDrives {
 public:
   HeldDrives(System& system, State& state) : system_(system) {

@@ -27,10 +27,11 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* k_names[] = {"trajectory.csv", "events.csv", "model.toml", "drawing.json", "summary.json"};
-// Files that are later created from the others and are removed when these are replaced.
+// Files that other commands create from the results, and that are removed when the results are replaced.
 constexpr const char* k_pages[] = {"report.html", "sheet.html"};
 constexpr const char* k_partial = "partial_";
-constexpr const char* k_staging = ".steplap-"; // followed by a random part, since processes in containers may have the same number
+// a random part follows, because processes in different containers may have the same process number
+constexpr const char* k_staging = ".steplap-";
 constexpr std::chrono::minutes k_locked_within{1};
 
 std::vector<std::string> all_names() {
@@ -54,7 +55,8 @@ fs::path existing_part(fs::path path) {
   return path;
 }
 
-// Lock of a folder, which ends with its process however that ends. Not held if another process has it, or if the file system has none.
+// Lock of a folder. The system releases it when the process ends for any reason. Not held if another process holds it, or if the file
+// system has no locks.
 class FolderLock {
 public:
   FolderLock() = default;
@@ -79,8 +81,8 @@ private:
   bool is_held_ = false;
 };
 
-// A temporary folder next to the target, in which files are collected. The destructor removes it with its contents.
-// The parent folder is also removed if it was created for this and is still empty.
+// A temporary folder next to the target, in which files are collected. The destructor removes it with its contents, and also its parent
+// folder if the constructor created that and it is still empty.
 class Staging {
 public:
   explicit Staging(const fs::path& folder) {
@@ -94,7 +96,7 @@ public:
     if (!::mkdtemp(name.data())) fail(folder.string(), std::strerror(errno));
     outer_ = name;
     lock_ = FolderLock(outer_);
-    fs::create_directory(path(), error); // with the usual permissions, which the outer folder has not
+    fs::create_directory(path(), error); // inner folder with the usual permissions; mkdtemp() makes the outer one private
     if (error) {
       remove();
       fail(folder.string(), error.message());
@@ -113,8 +115,8 @@ private:
     if (!made_.empty()) fs::remove(made_, ignored);
   }
 
-  // Removes folders of processes that were killed while they wrote: those without a lock. One that another process has made but not yet
-  // locked is younger than k_locked_within.
+  // Removes temporary folders of processes that were killed while writing: those without a lock that are older than k_locked_within. A
+  // younger one may not be locked yet.
   static void remove_left(const fs::path& parent) {
     std::error_code ignored;
     for (const fs::directory_entry& entry : fs::directory_iterator(parent, ignored)) {
@@ -129,7 +131,7 @@ private:
   fs::path outer_, made_;
 };
 
-// Messages name the path that the user expects.
+// Messages use the target path, which the user knows, instead of the temporary one.
 void write_all(const fs::path& staging, const fs::path& folder, const std::vector<ResultFile>& files) {
   for (const ResultFile& file : files) {
     const std::string path = (staging / file.name).string();
@@ -173,7 +175,7 @@ std::vector<double> column_errors(const Report& report) {
 } // namespace
 
 void write_trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors, const FileSink& put) {
-  constexpr std::size_t k_part = 1 << 16; // bytes, approximately the size of a cache
+  constexpr std::size_t k_part = 1 << 16; // bytes per piece, about the size of a cache
   std::vector<std::string> header{"t [s]"};
   for (const Channel* channel : trajectory.channels())
     header.push_back(channel->name + (channel->unit.empty() ? "" : " [" + channel->unit + "]"));
@@ -211,7 +213,7 @@ std::string events_csv(const std::vector<Event>& events, const std::vector<doubl
 
 namespace {
 
-// A sink that computes size and digest of the content passed through; they are complete after the last piece.
+// Returns the file with a content that also computes its size and digest while it is written; they are in `records` after the last piece.
 ResultFile noted(std::string name, FileContent content, const std::shared_ptr<FileRecords>& records) {
   FileContent put_and_note = [name, content = std::move(content), records](const FileSink& put) {
     FileRecord record{name, 0, ""};
@@ -271,10 +273,10 @@ void write_results(const std::string& folder, const std::vector<ResultFile>& fil
   const Staging staging(folder);
   write_all(staging.path(), folder, files);
   std::error_code error;
-  fs::rename(staging.path(), folder, error); // works if the target does not exist or is an empty folder
+  fs::rename(staging.path(), folder, error); // rename() succeeds if the target does not exist or is an empty folder
   if (!error) return;
   if (!fs::is_directory(folder)) fail(folder, error.message());
-  check_result_folder(folder, is_overwriting); // another process may have created results meanwhile
+  check_result_folder(folder, is_overwriting); // another process may have created results in the meantime
   move_into(staging.path(), folder, files);
 }
 

@@ -24,7 +24,7 @@ namespace steplap {
 /// A file of a run before it is written.
 struct ResultFile {
   std::string name;    ///< file name within the folder of the run
-  std::string content; ///< whole content, unless `parts` is set
+  std::string content; ///< complete content, unless `parts` is set
   FileContent parts{}; ///< for large files: writes the content piece by piece instead of `content`
 };
 
@@ -40,9 +40,9 @@ void write_trajectory_csv(const Trajectory& trajectory, const std::vector<double
 struct FileRecord {
   std::string name;      ///< file name within the folder of the run
   std::size_t bytes = 0; ///< size of the file
-  std::string sha256;    ///< hexadecimal
+  std::string sha256;    ///< digest, hexadecimal
 };
-/// One entry per file, in the order of writing.
+/// One record per file, in the order of writing.
 using FileRecords = std::vector<FileRecord>;
 /// Returns the text of summary.json, which lists `files` and ends with a checksum of itself.
 [[nodiscard]] std::string summary_json(const Report& report, const FileRecords& files);

@@ -90,7 +90,7 @@ void read_events(const fs::path& file, Results& results) {
   std::istringstream lines(read_text(file.string()));
   std::string line;
   std::getline(lines, line);
-  const std::size_t columns = cells_of(line).size() > 3 ? 4 : 3; // the fourth column contains errors of the times
+  const std::size_t columns = cells_of(line).size() > 3 ? 4 : 3; // the optional fourth column contains errors of the times
   for (std::size_t number = 2; std::getline(lines, line); ++number) {
     const std::vector<std::string> cells = cells_of(line);
     if (cells.size() != columns) damaged(file, number, "an event has a time, an element and what happened");
@@ -165,7 +165,7 @@ void check_files(const fs::path& file, const std::string& summary, const std::st
   const OrderedJson json = parse_ordered(std::string(content) + "}");
   for (const char* const name : {"trajectory.csv", "events.csv", "model.toml", "drawing.json"}) {
     const fs::path path = file.parent_path() / (prefix + name);
-    const OrderedJson& wanted = json.at("files").at(prefix + name); // exists, because the digest of the summary is correct
+    const OrderedJson& wanted = json.at("files").at(prefix + name); // exists: the digest of the summary is correct
     std::error_code error;
     const auto bytes = fs::file_size(path, error);
     if (error) throw FileError(path.string(), "'" + path.string() + "' is missing: the results are not whole, run the model again");

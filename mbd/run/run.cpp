@@ -28,8 +28,8 @@ Run run_model(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& op
   const StopScope stopping(options.stop);
   std::shared_ptr<const LoadedModel> loaded = with_settings(std::move(as_loaded), options);
   SimulationOptions simulation_asked = simulation_options(*loaded, options);
-  simulation_asked.notes_motion = options.estimating != Estimating::never; // needed to decide whether an equilibrium is stable
-  bool is_over = false;                                                    // samples the last state also after a failure
+  simulation_asked.notes_motion = options.estimating != Estimating::never; // recorded motion decides whether an equilibrium is stable
+  bool is_over = false; // the run has failed; result() then still samples the last state, and must not be stopped
   simulation_asked.progress = [&is_over, &options](double t) {
     if (options.progress) options.progress(t);
     if (!is_over) stop_if_asked(options, t);

@@ -8,19 +8,19 @@
 
 namespace steplap {
 
-/// Outcome of a run. It owns the model and the system to which pointers in the result lead.
+/// Outcome of a run. It owns the model and the system to which pointers in `result` refer.
 struct Run {
   std::shared_ptr<const LoadedModel> loaded; ///< never nullptr
   RunResult result;                          ///< results up to the failure, if there was one
   std::optional<Failure> failure;            ///< reason for an early end; empty if the run reached its end
 };
 
-/// Returns the options of a simulation with the settings of the model. The settings of `options` must have been applied before
-/// (with_settings.h). Throws std::invalid_argument for invalid options.
+/// Returns the options of a simulation with the settings of the model. Precondition: the settings of `options` have been applied to the
+/// model (with_settings.h). Throws std::invalid_argument for invalid options.
 [[nodiscard]] SimulationOptions simulation_options(const LoadedModel& loaded, const RunOptions& options);
 
 /// Runs the model with the settings of `options`. Throws ModelError if these settings are invalid (with_settings.h), NumericalFailure only
-/// if the run could not even start.
+/// if the run cannot start.
 [[nodiscard]] Run run_model(std::shared_ptr<const LoadedModel> loaded, const RunOptions& options = {});
 
 } // namespace steplap

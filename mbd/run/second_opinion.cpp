@@ -21,9 +21,9 @@ namespace steplap {
 
 namespace {
 
-// Limit for a run of either method, relative to the evaluations of the checked run, …
+// Limit for a run of either method: this multiple of the evaluations of the checked run.
 constexpr long k_most_times = 10;
-constexpr double k_always_granted = 3e7; // … and the evaluated parts (global_error.h) that are always permitted, which take a few seconds
+constexpr double k_always_granted = 3e7; // evaluated parts (global_error.h) that are always permitted; they take a few seconds
 constexpr double k_second_tolerance = 1e-6;
 
 CrossMethod method_used(const System& system, const SimulationOptions& as_run) {
@@ -50,7 +50,7 @@ std::string text_of(const Disagreement& d) {
   return d.text.empty() ? text : text + ", " + d.text;
 }
 
-// Counts how often runs of the other method violate a criterion on events that the checked run meets. A single violation is not conclusive,
+// Counts the runs of the other method that violate an event criterion which the checked run meets. A single violation is not conclusive,
 // because a slip can be lost between two samples.
 class EventCriteria {
 public:
@@ -88,8 +88,8 @@ private:
   int runs_ = 0;
 };
 
-constexpr double k_drawn_share = 1.0 / 3.0; // of the mean step of the run
-constexpr std::uint64_t k_drawn_seed = 42;  // constant, so that repeated checks of a run use the same steps
+constexpr double k_drawn_share = 1.0 / 3.0; // largest mean of the random steps, relative to the mean step of the checked run
+constexpr std::uint64_t k_drawn_seed = 42;  // constant seed, so that repeated checks of a run use the same steps
 
 // Returns the end times of steps with random lengths.
 std::vector<double> drawn_times(double end, double mean) {
@@ -103,12 +103,12 @@ std::vector<double> drawn_times(double end, double mean) {
 }
 
 std::unique_ptr<System> compiled_for_audit(const Model& model) {
-  std::unique_ptr<System> system = compile(model); // a new system with its own channels
+  std::unique_ptr<System> system = compile(model); // a second system with its own channels
   add_audit_channels(*system, model);
   return system;
 }
 
-// Runs other methods than the one used for the checked run.
+// Runs of other methods than that of the checked run.
 class SecondOpinionRuns {
 public:
   SecondOpinionRuns(const Run& asked, const RunOptions& options)
@@ -117,7 +117,7 @@ public:
 
   SecondOpinion time_stepping() { return ask(other_method(as_run_)); }
 
-  // Uses the first of two methods that reaches the end: rodas5p if tsit5 needs too many evaluations.
+  // Runs an event-locating method with random step lengths: tsit5, or rodas5p if tsit5 needs too many evaluations.
   SecondOpinion drawn_steps() {
     const double mean = k_drawn_share * as_run_.end / static_cast<double>(std::max(run_.statistics.steps, 1L));
     const std::unique_ptr<System> stopping = compiled_for_audit(loaded_.model);
@@ -130,7 +130,7 @@ public:
       opinion = ask({name,
                      {{name, tolerance, false}, {name, 0.1 * tolerance, false}},
                      stopping.get(),
-                     1.5 * mean}); // the system changes after an action
+                     1.5 * mean}); // an action would continue in another system
       opinion.drawn_step = mean;
       if (opinion.none_because.empty()) break;
     }
@@ -138,7 +138,7 @@ public:
   }
 
 private:
-  static constexpr double k_finest_drawn = 1e-9; // s; a tenth of it is still above rounding
+  static constexpr double k_finest_drawn = 1e-9; // smallest step, s; a tenth of it is still above rounding
 
   SecondOpinion ask(CrossMethod other) {
     CrossCheckOptions options;

@@ -81,19 +81,18 @@ std::string shown_quantity(double value, const std::string& unit, const ShownCon
 
 std::string shown_share(double share, std::optional<double> error, ShownDigits digits) {
   if (!std::isfinite(share)) return "–";
-  constexpr double k_countless = 1000.0; // times the limit; larger shares mean that no capacity is left (Utilisation::k_most_share)
+  constexpr double k_countless = 1000.0; // utilisation above which no capacity is left (Utilisation::k_most_share)
   if (share >= k_countless && !digits.is_full) return "> 1000 %";
   ShownContext context;
   if (error) context.error = 100.0 * *error;
   context.limit = 100.0;
-  context.scale = 1e7; // shares below a hundredth of a percent are shown as zero
+  context.scale = 1e7; // with this scale percentages below 0.01 are shown as zero
   const double percent = 100.0 * share;
   const bool is_error_shown = error && !(100.0 * std::abs(*error) < std::min(0.5, std::abs(percent - 100.0))) && *error != 0.0;
   if (digits.is_full || is_error_shown) return shown_quantity(percent, "%", context, digits);
   int decimals = std::abs(percent) < 10.0 ? 1 : 0;
   while (decimals < 3 && percent != 100.0 && rounded_to(percent, -decimals) == "100")
-    ++decimals; // a value on the other side of 100 % must be
-                // distinguishable
+    ++decimals; // a value other than 100 % must not be shown as 100 %
   return rounded_to(percent, -decimals) + " %";
 }
 

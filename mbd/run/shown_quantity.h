@@ -17,7 +17,7 @@ namespace steplap {
 
 /// Number of digits shown.
 struct ShownDigits {
-  int most = 4;         ///< for values with first digit 1; one less for others (at least 1), which is the same relative precision
+  int most = 4; ///< digits of a value whose first digit is 1; other values have one less (at least 1), which is the same relative precision
   bool is_full = false; ///< true: all known digits with their errors, as in measured_text.h
 
   /// Returns the number of digits for a value.
@@ -29,11 +29,10 @@ struct ShownContext {
   std::optional<double> error = {}; ///< in the value's unit; NaN: unknown
   std::optional<double> limit = {}; ///< in the value's unit; an error that reaches this limit is always shown
   double scale = 0.0;               ///< in the value's unit; values below 1e-9 of it are shown as zero
-  double column = 0.0;              ///< in the value's unit; the largest value of the column, which determines the prefix; 0: the value
-                                    ///< itself
+  double column = 0.0;              ///< largest value of the column, which determines the prefix, in the value's unit; 0: the value itself
 };
 
-/// Returns the prefix for values up to `largest`: kN from 1 kN, mm below 1 m, µm below 10 µm, ms below 10 ms.
+/// Returns the prefix for values up to `largest`, in SI: kN from 1 kN, mm below 1 m, µm below 10 µm, ms below 10 ms.
 [[nodiscard]] UnitPrefix shown_prefix(double largest, const std::string& unit);
 /// Returns "274 kN", "0.79 mm ± 0.02 mm", "0 m", "1.32"; "–" for NaN; "∞". `unit` is SI.
 [[nodiscard]] std::string shown_quantity(double value, const std::string& unit, const ShownContext& context = {}, ShownDigits digits = {});

@@ -8,7 +8,7 @@ namespace {
 
 void neutral(Sketch& s) { s.draw({"neutral", "", "", s.places(), {}, {}}); }
 
-// Draws the element as its field `draw` requests; its kind determines quantity, position and direction.
+// Returns the shape that the element's field `draw` requests. Quantity, position and direction are those of the usual drawing `as_usual`.
 Shape asked_for(const Sketch& as_usual, const std::string& type) {
   Shape shape{type, "", "", as_usual.places(), {}, {}};
   for (const char* field : {"normal", "axis"})

@@ -1,7 +1,7 @@
 // Describes how elements are drawn: shapes at markers of bodies, and contributions of elements to the geometry of bodies.
 //
-// Sizes are those of the model: radii, thicknesses, corners. Shapes without a size in the model (width of a spring, of a pin) are scaled by
-// the viewer. Fields are read by name, so a drawing needs no header of its kind.
+// Sizes are those of the model: radii, thicknesses, corners. The viewer chooses sizes that the model does not contain (width of a spring,
+// of a pin). Fields are read by name, so a drawing needs no header of its kind.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -19,7 +19,7 @@ namespace steplap {
 /// Position and orientation of a marker in the axes of its body about the centre of gravity, or in the ground's axes.
 struct MarkerPlace {
   std::string body;          ///< name of the body; "ground" for the ground
-  Vec2 point = Vec2::Zero(); ///< m
+  Vec2 point = Vec2::Zero(); ///< position, m
   double angle = 0.0;        ///< orientation relative to the body's axes, rad
   Vec2 at = Vec2::Zero();    ///< position in ground axes with all bodies in the reference pose, m
   double axes = 0.0;         ///< orientation relative to the ground's axes in the reference pose, rad
@@ -50,10 +50,10 @@ struct MarkerPlace {
 ///   joint       nothing: a step-lap joint is shown by its sheets
 struct Shape {
   std::string type, style;       ///< as listed above
-  std::string quantity;          ///< channel of the element that arrows and values show; "" = none
-  std::vector<MarkerPlace> at;   ///< number depends on the type
+  std::string quantity;          ///< channel of the element whose value the arrow shows; "" = none
+  std::vector<MarkerPlace> at;   ///< positions; their number depends on the type
   std::optional<Vec2> direction; ///< unit vector in the axes of the body of the last position
-  std::vector<double> sizes;     ///< m; points are in the axes of the body of the last position
+  std::vector<double> sizes;     ///< lengths, m; points are in the axes of the body of the last position
 };
 
 /// Geometry that elements contribute to a body, m, in its axes about the centre of gravity. Duplicates are merged.
@@ -61,7 +61,7 @@ struct BodyGeometry {
   std::set<std::array<double, 4>> circles;               ///< x, y, radius, 1 if the circle is open inside
   std::set<std::array<double, 5>> segments;              ///< from x, y, to x, y, thickness
   std::set<std::vector<std::array<double, 2>>> polygons; ///< corners, m
-  std::vector<Vec2> places;                              ///< points at which elements act
+  std::vector<Vec2> places;                              ///< points at which elements act, m
 };
 
 /// Drawing context of one element: access to its fields by name and to its markers, and the shapes drawn so far.
@@ -107,7 +107,8 @@ public:
   void size_last(std::vector<double> sizes);
   /// Replaces all shapes drawn so far.
   void replace(std::vector<Shape> shapes) { shapes_ = std::move(shapes); }
-  /// Adds a circle to the geometry of the body of `centre`. Corners and end points, here and below, are in the marker's axes, m.
+  /// Adds a circle to the geometry of the body of `centre`. In this and the following functions, corners and end points are in the marker's
+  /// axes, m.
   void circle(const MarkerPlace& centre, double radius, bool is_ring = false);
   /// Adds a bar with round ends to the geometry of the body.
   void segment(const MarkerPlace& frame, const Vec2& from, const Vec2& to, double thickness);

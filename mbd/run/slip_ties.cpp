@@ -15,10 +15,10 @@ namespace steplap {
 
 namespace {
 
-// Distance of a share from 1 below which rounding of coefficients, stiffness and dimensions decides.
+// Utilisations closer to 1 than this depend on rounding of coefficients, stiffness and dimensions.
 constexpr double k_knife_edge = 1e-5;
 
-// Returns the error of the time of the event at which the tie occurred, s; 0 if unknown.
+// Returns the error of the time, s, of the event at which the tie occurred; 0 if unknown.
 double time_error(const SimultaneousSlip& tie, const RunResult& result, const GlobalErrorEstimate* errors) {
   if (!errors) return 0.0;
   for (std::size_t i = 0; i < result.events.size() && i < errors->event_times.size(); ++i)

@@ -53,7 +53,7 @@ std::vector<ContactAtStart> contacts_at(const LoadedModel& loaded, const State& 
   };
   const ScenePose pose(loaded.model, system, still);
   std::vector<ContactAtStart> contacts;
-  int contact = -1; // elements are compiled in the order of the file, and each of these has one contact
+  int contact = -1; // elements are compiled in the order of the file, and each contact element has one contact
   for (const ElementEntry& entry : loaded.model.elements) {
     const auto description = contact_of(entry, loaded.model);
     const std::string& name = entry.element->name;

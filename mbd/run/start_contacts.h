@@ -13,13 +13,13 @@ struct ContactAtStart {
   int contact = -1;                    ///< index of its force in an evaluation
   int a = k_ground, b = k_ground;      ///< bodies of the system
   double gap = 0.0;                    ///< gap, m; negative: penetration
-  double force = 0.0;                  ///< N
-  Vec2 place = Vec2::Zero();           ///< where it touches, or would touch; of a face the middle; ground axes, m
-  std::optional<double> along;         ///< for faces with ends: coordinate along the face from marker b, m
+  double force = 0.0;                  ///< contact force, N
+  Vec2 place = Vec2::Zero();   ///< contact point in ground axes, m; for an open contact the point nearest to contact, for a face its middle
+  std::optional<double> along; ///< for faces with ends: coordinate along the face from marker b, m
 };
 
-/// Returns the initial state of a run: projected onto the joints, and in equilibrium if the model requests this. `as_given` skips the
-/// equilibrium.
+/// Returns the initial state of a run: projected onto the joints, and in equilibrium if the model requests this. `as_given`: without the
+/// search for equilibrium.
 [[nodiscard]] State beginning_of(const LoadedModel& loaded, bool as_given);
 
 /// Returns all contacts in `state` with all velocities zero, in the order of the file.

@@ -21,15 +21,19 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_unanswered = 10.0; // times the acceleration due to loads; contacts that settle under loads stay within a few times of it
-constexpr double k_felt = 0.1;        // of gravity; smaller accelerations come from rounded poses or clearance
-constexpr double k_through = 0.5;     // of the depth at which a contact law becomes invalid
-constexpr double k_light = 0.01;      // of a homogeneous plate's moment of inertia; its radius of gyration is then a tenth of the plate's
-constexpr double k_changes = 1e-3;    // relative to a state's scale, within the run
-// times the largest moment of inertia possible within the outline, with all mass at the farthest corner; outlines are approximate.
+// Largest opening acceleration, relative to that due to loads; contacts that settle under loads stay within a few times of it.
+constexpr double k_unanswered = 10.0;
+constexpr double k_felt = 0.1;    // least opening acceleration, relative to gravity; smaller ones come from rounded poses or clearance
+constexpr double k_through = 0.5; // largest penetration, relative to the depth at which a contact law becomes invalid
+// Least moment of inertia, relative to a homogeneous plate with the outline: a tenth of its radius of gyration.
+constexpr double k_light = 0.01;
+// Change of a state within the run, relative to its scale, above which the machine leaves the equilibrium.
+constexpr double k_changes = 1e-3;
+// Largest moment of inertia, relative to the largest one possible within the outline (all mass at the farthest corner); outlines are
+// approximate.
 constexpr double k_heavy = 2.0;
-// Ratios of the radius of gyration to the farthest point of the body, and to the size of the scene, above which it is implausible. A
-// flywheel may have only its crank pin as a point.
+// Largest radius of gyration relative to the farthest point of the body, and to the size of the scene. A flywheel may have only its crank
+// pin as a point.
 constexpr double k_beyond_places = 10.0, k_beyond_scene = 2.0;
 
 class StartFinder {
@@ -39,7 +43,7 @@ public:
   std::vector<Finding> run() {
     for (const ContactAtStart& contact : scene_.contacts)
       if (const auto check = loaded_.views->of(*contact.entry->kind).check_contact) check(scene_, contact);
-    // The search for an equilibrium also starts from these poses.
+    // For a search for equilibrium the given poses are only a first guess, so they are not checked.
     if (loaded_.model.simulation.initial != "equilibrium") {
       for (const ContactAtStart& contact : scene_.contacts) check_depth(contact);
       for (const ElementEntry& entry : loaded_.model.elements)
@@ -62,7 +66,8 @@ private:
     return opening.acceleration > k_unanswered * std::max(opening.by_loads, k_felt * system_.gravity.norm());
   }
 
-  // In the search for an equilibrium inner states keep their initial values. If they change afterwards, the machine leaves the equilibrium.
+  // The search for an equilibrium keeps inner states at their initial values. If they change afterwards, the machine leaves the
+  // equilibrium.
   void check_states() {
     const std::vector<const OwnState*> states = own_states(loaded_.model);
     const auto* group = states.empty() ? nullptr : own_state_group(system_);
@@ -109,8 +114,8 @@ private:
     scene_.add("starts_deep", element.where, text);
   }
 
-  // Returns true if drives and joints to the ground determine the rotation. Its inertia then affects only their loads, which no criterion
-  // limits. With actions the result is false, because they may release drives and joints.
+  // Returns true if drives and joints to the ground prescribe the rotation of the body. Its inertia then affects only their loads, which no
+  // criterion limits. Returns false in models with actions, which may release drives and joints.
   [[nodiscard]] bool is_driven(const Body& body) const {
     const auto named = std::find_if(system_.bodies.begin(), system_.bodies.end(), [&](const BodyData& b) { return b.name == body.name; });
     if (named == system_.bodies.end() || action_group(system_)) return false;
@@ -160,7 +165,7 @@ private:
     scene_.add("inertia_unlike_outline", body.where, text);
   }
 
-  // Checks the radius of gyration. `reach` is the largest distance of the body's points from its centre, `extent` the size of the scene.
+  // Checks the radius of gyration. `reach`: largest distance of the body's points from its centre, m; `extent`: size of the scene, m.
   void check_gyration(const Body& body, double reach, double extent) {
     const double gyration = std::sqrt(body.inertia / body.mass);
     if (!(reach > 0.0) || !(gyration > k_beyond_places * reach) || !(gyration > k_beyond_scene * extent) || is_driven(body)) return;

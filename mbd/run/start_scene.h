@@ -1,5 +1,4 @@
-// The initial state of a run as its checks see it: contacts, forces, and the findings so far. Kinds add checks of their own fields
-// (ElementView).
+// Initial state of a run for its checks: contacts, forces, and the findings so far. Kinds add checks of their own fields (ElementView).
 #pragma once
 
 #include "mbd/run/finding.h"
@@ -11,7 +10,7 @@
 
 namespace steplap {
 
-/// Returns a value with three digits, which suffice to identify it.
+/// Returns a value with three digits, enough to recognise it.
 [[nodiscard]] std::string three_digits(double value);
 /// Returns a length with three digits and its unit.
 [[nodiscard]] std::string short_length(double metres);
@@ -20,13 +19,13 @@ namespace steplap {
 /// Returns an angle in degrees with three digits.
 [[nodiscard]] std::string short_degrees(double radians);
 
-/// The scene. Keeps a reference to the model.
+/// Data of the checks at the start of a run. Keeps a reference to the model.
 struct StartScene {
   /// Computes the state of the model before a search for equilibrium, its contacts and its forces.
   explicit StartScene(const LoadedModel& loaded_);
 
-  static constexpr double k_typed = 1e-6; ///< relative to the bodies' size; rounding of typed poses
-  static constexpr double k_off = 1e-3;   ///< relative to the bodies' size; larger deviations are not rounding
+  static constexpr double k_typed = 1e-6; ///< rounding of typed poses, relative to the bodies' size
+  static constexpr double k_off = 1e-3;   ///< deviations above this, relative to the bodies' size, are not rounding
 
   const LoadedModel& loaded;            ///< the model
   const System& system;                 ///< its system

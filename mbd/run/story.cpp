@@ -19,9 +19,9 @@ namespace steplap {
 namespace {
 
 struct SubjectText {
-  const char* key;     // key_of()
-  const char* verb;    // singular
-  const char* several; // plural
+  const char* key;     // result of key_of()
+  const char* verb;    // for one subject: "slips"
+  const char* several; // for several subjects: "slip"
 };
 
 const SubjectText& words_of(StorySubject what) {
@@ -46,18 +46,18 @@ const SubjectText& words_of(StorySubject what) {
   return k_words[static_cast<std::size_t>(what)];
 }
 
-// One element with one kind of occurrence.
+// Occurrences of one kind at one element; repetitions are counted.
 struct Happening {
   StorySubject what = StorySubject::slips;
   std::string who;
   std::size_t count = 0;
   double from = 0.0, begun = 0.0; // begin of the first and of the last occurrence, s
-  std::optional<double> to;       // end of the last occurrence, s; none: it lasts
+  std::optional<double> to;       // end of the last occurrence, s; empty: it lasts until the end of the run
   std::optional<StoryAmount> amount;
   std::optional<double> from_error, to_error;
   bool is_over = true;
   std::string detail = {};        // for an action: its effect
-  std::string body = {}, on = {}; // for friction under contacts: the body that slides, and the one that it slides on
+  std::string body = {}, on = {}; // for friction under contacts: the sliding body, and the body on which it slides
 };
 
 bool is_instant(StorySubject what) {
@@ -67,9 +67,9 @@ bool is_instant(StorySubject what) {
 
 // --- from events to occurrences
 
-constexpr double k_at_start = 1e-5; // of the run; earlier events count as part of the start
+constexpr double k_at_start = 1e-5; // events before this fraction of the run belong to the start
 
-// For an element that opens and closes repeatedly: the occurrence that its first event began.
+// Occurrence of an element that opens and closes repeatedly, defined by its first event.
 struct SubjectDirection {
   StorySubject what;
   bool is_opening;
@@ -92,7 +92,7 @@ public:
     add_monitored();
     add_tipped();
     const double end = report_.run.result.final_state.t;
-    std::erase_if(found_, [end](const Happening& h) { // bodies placed on the floor at the start that stay there
+    std::erase_if(found_, [end](const Happening& h) { // bodies that touch the floor at the start and stay there are not reported
       return h.what == StorySubject::touches && h.count == 1 && h.from <= k_at_start * end && !h.is_over;
     });
     std::stable_sort(found_.begin(), found_.end(), [](const Happening& a, const Happening& b) { return a.from < b.from; });
@@ -100,7 +100,8 @@ public:
   }
 
 private:
-  static constexpr double k_tipped = 5.0 / 180.0 * std::numbers::pi; // rad; smaller rotations are rocking on springs
+  // Smallest reported rotation, rad; smaller ones are rocking on springs.
+  static constexpr double k_tipped = 5.0 / 180.0 * std::numbers::pi;
 
   const ElementEntry* entry_of(const std::string& element) const {
     const auto found = entry_of_.find(element);
@@ -136,7 +137,7 @@ private:
     const auto points = contact->points(*entry_of(element)->element, ScenePose(loaded.model, *loaded.system, reference));
     if (points.empty()) return false;
     const Vec2 &normal = points.front().normal, &gravity = loaded.model.header.gravity;
-    constexpr double k_upright = 0.7; // cosine; less than 45° from the vertical
+    constexpr double k_upright = 0.7; // least cosine of the angle to the vertical, about 45°
     return -normal.dot(gravity) > k_upright * gravity.norm();
   }
 
@@ -172,7 +173,7 @@ private:
     h.to_error = error;
   }
 
-  // `is_opening`: the element opens, goes slack or reaches its stop; false for the reverse.
+  // Begins or ends an occurrence. `is_opening`: the element opens, goes slack or reaches its stop; false for the reverse.
   void toggle(bool is_opening, const Event& event, std::optional<double> error) {
     auto way = ways_.find(event.element);
     if (way == ways_.end()) way = ways_.emplace(event.element, SubjectDirection{what_of(event, is_opening), is_opening}).first;
@@ -194,7 +195,7 @@ private:
     }
   }
 
-  // An action that releases an element ends its occurrences: the element no longer slides, presses or is slack.
+  // Adds an action. If it releases an element, the element's occurrences end: it no longer slides, presses or is slack.
   void take_action(const Event& event, std::optional<double> error) {
     begin(StorySubject::happens, event, error);
     entry(StorySubject::happens, event.element).detail = event.detail;
@@ -279,7 +280,7 @@ private:
   std::optional<std::pair<std::string, std::string>> bodies_of_friction(const ElementEntry& entry) const {
     if (!entry.kind->friction) return std::nullopt;
     const ElementEntry* touching = &entry;
-    if (const Field* const contacts = entry.kind->fields.find("contacts")) { // friction is an element of its own
+    if (const Field* const contacts = entry.kind->fields.find("contacts")) { // friction is a separate element, on contacts
       const auto names = std::get<std::vector<std::string>>(contacts->get(entry.element.get()));
       touching = names.empty() ? nullptr : entry_of(names.front());
     }
@@ -292,7 +293,8 @@ private:
     return std::pair{name(contact->a), name(contact->b)};
   }
 
-  // The subject of a slide is the body that moves. Where two friction elements join the same bodies, only their own names tell them apart.
+  // Sets the body that slides and the one on which it slides. If two friction elements join the same bodies, the names of the elements are
+  // kept, to distinguish them.
   void add_bodies(Happening& h) const {
     const ElementEntry* const entry = h.what == StorySubject::slips ? entry_of(h.who) : nullptr;
     const auto bodies = entry ? bodies_of_friction(*entry) : std::nullopt;
@@ -303,7 +305,7 @@ private:
     if (same == 1) std::tie(h.body, h.on) = *bodies;
   }
 
-  // A monitored joint does not slip; the entry says that it would have slipped.
+  // Adds monitored joints whose capacity was exceeded. Such a joint does not slip; the entry says that it would have slipped.
   void add_monitored() {
     for (const JointAssessment& joint : report_.joints)
       if (joint.is_monitored && joint.first_slip)
@@ -315,7 +317,7 @@ private:
     if (const Place place = place_of(report_.run.loaded->model, marker); place.body) bodies.insert(place.body->name);
   }
 
-  // Adds bodies on corners or faces that rotated far and that nothing guides. Rotation of wheels and cranks is intended.
+  // Adds bodies on corners or faces that rotated far and that no joint guides. Rotation of wheels and cranks is intended.
   void add_tipped() {
     std::unordered_set<std::string> standing, guided;
     for (const ElementEntry& entry : report_.run.loaded->model.elements) {
@@ -342,9 +344,9 @@ private:
   const Report& report_;
   const RangeIndex& ranges_;
   std::unordered_map<std::string, const ElementEntry*> entry_of_;
-  std::unordered_map<std::string, std::size_t> place_; // key: element and What
+  std::unordered_map<std::string, std::size_t> place_; // index in found_ by element and subject
   std::unordered_map<std::string, SubjectDirection> ways_;
-  mutable std::unordered_map<std::string, bool> is_upright_; // results of points_up()
+  mutable std::unordered_map<std::string, bool> is_upright_; // cache of is_upright()
   std::vector<Happening> found_;
 };
 
@@ -353,13 +355,13 @@ private:
 class StoryWriter {
 public:
   StoryWriter(const Report& report, ShownDigits digits) : digits_(digits), end_(report.run.result.final_state.t) {
-    for (const ChannelRange& range : report.ranges()) { // scale for the detection of rounding
+    for (const ChannelRange& range : report.ranges()) { // sizes of the scene, to detect rounding errors
       if (range.channel->unit == "m") scale_m_ = std::max(scale_m_, std::abs(range.largest().value));
       if (range.channel->unit == "N") scale_n_ = std::max(scale_n_, std::abs(range.largest().value));
     }
   }
 
-  // `beside` is a later time in the same sentence; both get the same unit.
+  // Returns "the start" or the time with its unit. `beside`: a later time in the same sentence, which gets the same unit.
   std::string time(double t, std::optional<double> error, double beside = 0.0) const {
     if (is_start(t)) return "the start";
     return shown_quantity(t, "s", {.error = error, .scale = end_, .column = std::max(t, beside)}, digits_);
@@ -374,7 +376,7 @@ public:
     return shown_quantity(a.value, a.unit, {.error = a.error, .scale = a.unit == "m" ? scale_m_ : scale_n_}, digits_);
   }
 
-  // Returns "", or ", at most 3.1 mm" and similar.
+  // Returns the amount as ", at most 3.1 mm" or similar; "" without an amount.
   std::string reach(StorySubject what, const std::optional<StoryAmount>& a) const {
     if (!a) return "";
     const std::string shown = amount(*a);
@@ -462,12 +464,12 @@ public:
   }
 
 private:
-  static constexpr double k_over = 60.0 / 180.0 * std::numbers::pi; // rad; a body rotated further does not return
+  static constexpr double k_over = 60.0 / 180.0 * std::numbers::pi; // smallest rotation, rad, from which a body does not return
   ShownDigits digits_;
   double end_ = 0.0, scale_m_ = k_least_length_scale, scale_n_ = 0.0;
 };
 
-constexpr std::size_t k_few = 8;      // number of entries that are shown individually
+constexpr std::size_t k_few = 8;      // largest number of entries that are shown individually
 constexpr std::size_t k_together = 3; // smallest number of elements that are merged, if there are more than k_few entries
 
 } // namespace

@@ -1,5 +1,5 @@
-// Contents of summary.json as a JSON document. The file is written from it, and the screen shows it, for a new run as for one read from its
-// folder.
+// Contents of summary.json as a JSON document. The file contains this document, and the screen shows it, both for a new run and for one
+// read from its folder.
 #pragma once
 
 #include "mbd/run/ordered_json.h"
@@ -16,7 +16,7 @@ struct LoadCaseResults;
 [[nodiscard]] OrderedJson judgement_json(const Judgement& judgement);
 /// Returns the main part: model, overview, findings, number of events. `digits` applies to the texts of the overview.
 [[nodiscard]] OrderedJson summary_head(const Report& report, ShownDigits digits = {});
-/// Returns the results of all load cases (load_cases.h). "judgement" of a case is that of summary.json of a run with its overrides.
+/// Returns the results of all load cases (load_cases.h). "judgement" of a case equals that of a separate run with its overrides.
 [[nodiscard]] OrderedJson load_cases_document(const LoadCaseResults& results);
 /// Returns the whole document except for the list of files and the checksum.
 [[nodiscard]] OrderedJson summary_document(const Report& report, ShownDigits digits = {});

@@ -14,10 +14,10 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_rank = 1e-8; // relative to the largest gradient of the rows
+constexpr double k_rank = 1e-8; // tolerance of the rank, relative to the largest gradient of the rows
 constexpr double k_pi = std::numbers::pi;
 
-// Tipping of single parts, each with everything that stands on it.
+// Tipping of single parts. Everything that stands on a part moves with it.
 class PartTipping {
 public:
   explicit PartTipping(const TippingScene& scene) : scene_(scene) {}
@@ -55,7 +55,7 @@ private:
     return std::any_of(feet.begin(), feet.end(),
                        [&](const Foot& foot) { return TippingScene::push_on(part, foot).dot(scene_.system().gravity) < 0.0; });
   }
-  // Returns true if joints to other bodies prevent rotation about every foot.
+  // Returns true if joints to bodies outside the part prevent rotation about every foot.
   [[nodiscard]] bool is_led(const TippingPart& part) const {
     const MatX rows = outer_rows(part);
     if (rows.rows() == 0) return false;
@@ -66,8 +66,8 @@ private:
     });
   }
 
-  // Returns the velocity of a point. A rigid motion `twist` is (velocity of the point of the part at the ground's origin, angular
-  // velocity).
+  // Returns the velocity of a point `at` of a rigid motion. `twist`: velocity of the point at the ground's origin (2), angular velocity
+  // (1).
   [[nodiscard]] static Vec2 velocity(const Vec3& twist, const Vec2& at) { return Vec2(twist.head<2>()) + twist.z() * quarter_turn(at); }
   [[nodiscard]] static Vec3 turn_about(const Vec2& point, double rate) {
     const Vec2 v = -rate * quarter_turn(point);
@@ -90,7 +90,7 @@ private:
     return rows;
   }
 
-  // Returns the sense of rotation about a foot that lifts another foot; nothing if other feet would penetrate.
+  // Returns the rigid motion with angular velocity `rate` about a foot that joints to other bodies permit; nothing if they permit none.
   [[nodiscard]] std::optional<Vec3> motion_about(const Foot& pivot, const Vec2& normal, const MatX& rows, double rate) const {
     if (rows.rows() == 0) return turn_about(pivot.point, rate);
     const Vec3 row = rows.row(0).transpose();
@@ -122,7 +122,7 @@ private:
     return best;
   }
 
-  // Returns the rate at which a motion of the part would lengthen a rope.
+  // Returns the rate at which a rigid motion of the part lengthens a rope, m/s.
   [[nodiscard]] double lengthening(const TippingPart& part, const OneSidedRow& rope, const Vec3& twist) const {
     double rate = 0.0;
     rope.for_parts([&](const RowSpec& row) {
@@ -170,7 +170,7 @@ private:
       of_loads += scene_.load(i).fx * v.x() + scene_.load(i).fy * v.y() + scene_.load(i).m * twist.z();
     }
     const double size = portable::hypot(of_gravity, of_turned);
-    if (!(size > std::abs(of_loads))) return std::nullopt; // no tilt changes the balance
+    if (!(size > std::abs(of_loads))) return std::nullopt; // no tilt changes the sign of the power
     const double now = of_gravity + of_loads, middle = portable::atan2(of_turned, of_gravity);
     const double reach = portable::atan2(std::sqrt(size * size - of_loads * of_loads), -of_loads); // acos(-of_loads/size)
     double nearest = 2.0 * k_pi;
@@ -181,7 +181,8 @@ private:
     if (!(std::abs(nearest) < 0.5 * k_pi)) return std::nullopt;
     Tipping tipping;
     tipping.margin = now > 0.0 ? -std::abs(nearest) : std::abs(nearest);
-    tipping.is_clockwise = (nearest > 0.0) == (now <= 0.0); // gravity turned in one sense corresponds to the ground tilted in the other
+    // Gravity turned in one sense corresponds to the ground tilted in the opposite sense.
+    tipping.is_clockwise = (nearest > 0.0) == (now <= 0.0);
     if (std::abs(of_turned) > k_rank * size) tipping.acceleration = std::abs(now / of_turned) * scene_.system().gravity.norm();
     if (const auto slope = scene_.slope_below(part)) {
       tipping.slope = slope;

@@ -13,7 +13,7 @@ namespace steplap {
 namespace {
 
 constexpr double k_most_friction = 2.0; // largest coefficient of dry friction that is considered possible
-constexpr double k_same = 1e-6;         // rad
+constexpr double k_same = 1e-6;         // tilts that differ by less are equal, rad
 
 class BlockTipping {
 public:
@@ -27,7 +27,7 @@ public:
   }
 
 private:
-  // Returns groups of components connected by feet, in which at least one component cannot be judged alone.
+  // Returns groups of components that stand on each other, in which at least one component cannot be judged alone.
   [[nodiscard]] std::vector<std::vector<int>> leaning_groups() const {
     std::vector<int> group(scene_.system().bodies.size());
     for (int i = 0; i < scene_.system().body_count(); ++i) group[i] = scene_.component(i);
@@ -47,9 +47,9 @@ private:
     }
     return found;
   }
-  // Coordinates of the blocks. A row is a unit force `along` at `at` on body a and its opposite on b.
+  // Rows of the blocks' constraints. A row is the gradient of a unit force `along` at `at` on body a, and the opposite force on b.
   struct BlockRows {
-    std::vector<int> place; ///< index per body; −1: the body is fixed
+    std::vector<int> place; ///< per body: index of its block; −1: the body is fixed
     int count = 0;
     double length = 0.0; ///< length by which angles are scaled
     void add(VecX& row, int body, const Vec3& part, double sign) const {
@@ -122,7 +122,7 @@ private:
     return best;
   }
 
-  // Rows of friction come first, one for each foot.
+  // Returns constraints and loads of a group of blocks. The rows of friction come first, one for each foot.
   [[nodiscard]] Blocks blocks_of(const TippingPart& part, const BlockRows& rows, const std::vector<const Foot*>& feet) const {
     const int n = 3 * rows.count;
     std::vector<VecX> joints, gaps;
@@ -155,10 +155,10 @@ private:
     return blocks;
   }
 
-  // Returns true if friction up to k_most_friction suffices for the balance. Otherwise the bodies separate in another way, and no
+  // Returns true if friction coefficients up to k_most_friction suffice for the balance. Otherwise the bodies separate by sliding, and no
   // result is given.
   [[nodiscard]] bool is_held_by_friction(const Collapse& collapse, const std::vector<const Foot*>& feet) const {
-    std::map<std::string, std::pair<double, double>> of_contact; // normal and tangential force
+    std::map<std::string, std::pair<double, double>> of_contact; // normal and tangential force of each contact
     double most = 0.0;
     for (std::size_t i = 0; i < feet.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
@@ -198,7 +198,7 @@ private:
     return tipping;
   }
 
-  // Returns true if the group collapses before each of its bodies tips alone.
+  // Returns true if the group collapses at a smaller tilt than each of its bodies tips alone.
   [[nodiscard]] bool is_before(const std::vector<Tipping>& found, const std::vector<int>& group, const Tipping& tipping) const {
     return std::none_of(found.begin(), found.end(), [&](const Tipping& t) {
       const bool is_ours = std::find(group.begin(), group.end(), scene_.component(t.body)) != group.end();

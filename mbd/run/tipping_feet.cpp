@@ -10,7 +10,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_near = 1e-3; // relative to the radius of gyration
+constexpr double k_near = 1e-3; // largest gap of a foot, relative to the radius of gyration
 
 class FootFinder {
 public:

@@ -8,10 +8,10 @@ namespace steplap {
 /// A contact point. Two outlines whose faces touch have two, at the ends of the common length.
 struct Foot {
   std::string element;            ///< name of the contact element
-  std::string name;               ///< name of the contact with the end of the face
-  int a = k_ground, b = k_ground; ///< bodies of the system
+  std::string name;               ///< name of the contact, for a face with the end
+  int a = k_ground, b = k_ground; ///< indices of bodies in the system
   Vec2 point = Vec2::Zero();      ///< point, m, ground axes
-  Vec2 normal = Vec2::Zero();     ///< direction of the force on a
+  Vec2 normal = Vec2::Zero();     ///< unit vector in the direction of the force on a
 };
 
 /// Returns the points of all contacts that are closed in `state`, or open by less than 0.001 of the size of the bodies, because in a given

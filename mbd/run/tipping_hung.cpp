@@ -8,10 +8,10 @@ namespace steplap {
 
 namespace {
 
-/// An element as a connection of bodies, with its end points if it exerts only forces at points.
+/// An element as a connection of bodies. It has end points if it exerts only forces at points.
 struct Tie {
   std::vector<int> bodies;
-  std::vector<Vec2> points; ///< per body; empty if it also exerts couples or forces elsewhere
+  std::vector<Vec2> points; ///< one point per body, m; empty if the element also exerts couples or forces elsewhere
 };
 
 void add_force(BodyForce& sum, const Vec2& centre, const Vec2& point, const Vec2& force) {
@@ -38,7 +38,7 @@ public:
     std::vector<Candidate> candidates;
     for (std::size_t i = 0; i < ties_.size(); ++i)
       if (auto candidate = hung_by(i)) candidates.push_back(std::move(*candidate));
-    for (const Candidate& candidate : candidates) // loads inside another hanging load are part of it
+    for (const Candidate& candidate : candidates) // a load whose carrier belongs to another hanging load is part of that load
       if (std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& c) { return c.is_below[candidate.load.carrier]; }))
         take(candidate);
     return std::move(found_);
@@ -47,9 +47,9 @@ public:
 private:
   struct Candidate {
     std::size_t tie = 0;
-    std::vector<char> is_below;      ///< per body
-    std::size_t first = 0, last = 0; ///< range of the tie's points that are not on the load
-    std::size_t at = 0;              ///< index, among these, of the suspension point
+    std::vector<char> is_below;      ///< per body: belongs to the hanging load
+    std::size_t first = 0, last = 0; ///< range of the tie's points that do not belong to the load
+    std::size_t at = 0;              ///< index of the suspension point among the tie's points
     HungLoad load;
   };
 
@@ -73,12 +73,13 @@ private:
         for (const std::string& name : markers) add_point(tie, name);
         return tie;
       }
-    if (tie.bodies.size() == 1) tie.bodies.push_back(k_ground); // a load element: it does not hang freely
+    // an element with one body is a load from outside: its body does not hang freely
+    if (tie.bodies.size() == 1) tie.bodies.push_back(k_ground);
     tie.points.clear();
     return tie;
   }
 
-  // Returns all bodies connected with a body if one tie is cut; the search stops at the ground.
+  // Returns, per body, whether it is connected with `body` when tie `cut` is removed. The search stops when it reaches the ground.
   [[nodiscard]] std::vector<char> joined_with(int body, std::size_t cut) const {
     std::vector<char> is_joined(system_.bodies.size(), 0);
     is_joined[body] = 1;
@@ -109,7 +110,7 @@ private:
       c.first = static_cast<std::size_t>(first - tie.bodies.begin());
       c.last = static_cast<std::size_t>(last - tie.bodies.begin()) - 1;
       if (c.first > 0 && c.last + 1 < tie.bodies.size() && c.first != c.last)
-        continue; // held by two rope parts at different points, so it does not swing
+        continue; // two parts of the rope hold the load at different points, so it does not swing
       c.at = c.first > 0 ? c.first : c.last;
       c.load.carrier = tie.bodies[c.at];
       c.load.point = tie.points[c.at];
@@ -120,7 +121,8 @@ private:
     return std::nullopt;
   }
 
-  // Subtracts the present forces of the tie and adds those with the load at rest. The weight itself is added with the mass of the load.
+  // Corrects the forces on the carrier: subtracts the present forces of the tie and adds those with the load at rest. The weight itself
+  // enters by the mass of the load.
   void take(const Candidate& c) {
     const Tie& tie = ties_[c.tie];
     Vec2 on_load = Vec2::Zero();
@@ -131,7 +133,7 @@ private:
       add_force(found_.correction[c.load.carrier], centre(c.load.carrier), c.load.point, on_load);
       found_.loads.push_back(c.load);
     }
-    const double change = c.load.mass * system_.gravity.norm() - on_load.norm(); // change of the tension
+    const double change = c.load.mass * system_.gravity.norm() - on_load.norm(); // change of the tension until the load is at rest, N
     for (std::size_t p = c.first; p < c.last; ++p) {
       const Vec2 along = tie.points[p + 1] - tie.points[p];
       if (tie.bodies[p] == tie.bodies[p + 1] || along == Vec2::Zero()) continue;
@@ -146,7 +148,7 @@ private:
   const System& system_;
   const State& state_;
   const std::vector<BodyForce>& force_;
-  std::vector<Tie> ties_; ///< per element of the model
+  std::vector<Tie> ties_; ///< connections, one per element of the model
   Hanging found_;
 };
 

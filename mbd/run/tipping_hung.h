@@ -1,4 +1,4 @@
-// Finds freely hanging loads. The weight of such a load acts at its suspension point in every direction of gravity.
+// Finds freely hanging loads. The weight of such a load acts at its suspension point for every direction of gravity.
 //
 // A load at rest that touches nothing else and hangs by one pin, rod, spring or rope swings until its centre of gravity is below the
 // suspension point. It then exerts its weight and no couple, like a point mass at that point, for every tilt of the machine that carries
@@ -10,24 +10,24 @@
 
 namespace steplap {
 
-/// A hanging load at the body that carries it.
+/// A hanging load, as point mass on the body that carries it.
 struct HungLoad {
-  int carrier = k_ground;    ///< body of the system
+  int carrier = k_ground;    ///< index of the carrying body in the system
   Vec2 point = Vec2::Zero(); ///< suspension point in ground axes, m
-  double mass = 0.0;         ///< kg
+  double mass = 0.0;         ///< mass of the load, kg
   int bodies = 0;            ///< number of bodies of the load
 };
 
 /// All hanging loads of a pose, and their effect on the bodies that carry them.
 struct Hanging {
-  std::vector<HungLoad> loads;       ///< one for each hanging load
-  std::vector<char> is_hung;         ///< per body
-  std::vector<BodyForce> correction; ///< per body: to be added to the element forces on bodies that carry loads, so that they are those of
-                                     ///< loads at rest
-  std::vector<std::string> by;       ///< names of the suspending elements
+  std::vector<HungLoad> loads; ///< one for each hanging load
+  std::vector<char> is_hung;   ///< per body: belongs to a hanging load
+  /// Per body: correction of the element forces on bodies that carry loads, from the present motion to loads at rest.
+  std::vector<BodyForce> correction;
+  std::vector<std::string> by; ///< names of the suspending elements
 };
 
-/// Finds the hanging loads. `force` are the forces on each body, in `state`, of elements that are neither contacts nor joints.
+/// Finds the hanging loads. `force`: force on each body, in `state`, of elements that are neither contacts nor joints.
 [[nodiscard]] Hanging hanging_loads(const LoadedModel& loaded, const State& state, const std::vector<std::string>& touching,
                                     const std::vector<BodyForce>& force);
 

@@ -13,9 +13,9 @@ namespace steplap {
 namespace {
 
 constexpr double k_rank = 1e-8;       // relative tolerance for the rank of the rows
-constexpr double k_balanced = 1e-10;  // relative to the loads; smaller unbalanced parts are rounding
-constexpr double k_same_tilt = 1e-12; // rad
-constexpr int k_most_checks = 200;    // iterations for a tilt
+constexpr double k_balanced = 1e-10;  // unbalanced remainder, relative to the loads, that counts as rounding
+constexpr double k_same_tilt = 1e-12; // convergence of the tilt, rad
+constexpr int k_most_checks = 200;    // largest number of iterations for a tilt
 constexpr double k_right_angle = 0.5 * std::numbers::pi;
 
 MatX columns_of(const MatX& a, const std::vector<int>& which) {
@@ -27,7 +27,7 @@ MatX columns_of(const MatX& a, const std::vector<int>& which) {
 // Solves min |a x − b| with x ≥ 0 (C. L. Lawson, R. J. Hanson, Solving Least Squares Problems, 1974, ch. 23).
 VecX nonnegative_solution(const MatX& a, const VecX& b, double rounding) {
   VecX x = VecX::Zero(a.cols());
-  std::vector<int> held; // columns whose x is not zero
+  std::vector<int> held; // columns with x > 0
   for (Eigen::Index round = 0; round < 10 * a.cols() + 10; ++round) {
     VecX pull = a.transpose() * (b - a * x);
     for (const int i : held) pull[i] = 0.0;
@@ -78,7 +78,7 @@ public:
     rounding_ = k_balanced * (blocks.weight.norm() + blocks.turned.norm() + blocks.loads.norm());
   }
 
-  // Newton's method on the tilt: the next tilt is the root of the power of the motion that has most power at the present tilt.
+  // Newton's method for the tilt: the next tilt is the root of the power of that motion which has most power at the present tilt.
   std::optional<Collapse> run(double sign) {
     Collapse found;
     balance(0.0);
@@ -108,8 +108,8 @@ private:
   [[nodiscard]] VecX load(double tilt) const {
     return portable::cos(tilt) * blocks_.weight + portable::sin(tilt) * blocks_.turned + blocks_.loads;
   }
-  // Projects the loads onto those that contact forces ≥ 0 can balance. The remainder left_ is zero in balance. Otherwise it is the motion
-  // of the collapse: it opens gaps or keeps them closed, and its power is |left_|².
+  // Projects the loads at `tilt` onto those that contact forces ≥ 0 can balance, and stores the remainder in left_, which is zero in
+  // balance. Otherwise it is the motion of the collapse: it opens gaps or keeps them closed, and its power is |left_|².
   void balance(double tilt) {
     const VecX driving = basis_.transpose() * load(tilt);
     forces_ = nonnegative_solution(gaps_.transpose(), -driving, rounding_);

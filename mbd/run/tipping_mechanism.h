@@ -20,17 +20,17 @@ struct Blocks {
   VecX weight, turned, loads; ///< A, B, C
 };
 
-/// The tilt at which blocks collapse, and the motion.
+/// Tilt at which blocks collapse, and the motion of the collapse.
 struct Collapse {
-  double turned = 0.0; ///< φ of gravity, rad
-  VecX motion;         ///< motion of the collapse, length 1
-  VecX gap_forces;     ///< contact forces of the last possible balance at φ; empty if there is none
-  VecX joint_forces;   ///< joint forces of this balance, with the least norm
+  double turned = 0.0; ///< rotation φ of gravity, rad
+  VecX motion;         ///< motion of the collapse, normalised
+  VecX gap_forces;     ///< contact forces of the last possible balance, at φ; empty if there is none
+  VecX joint_forces;   ///< joint forces of that balance, with the least norm
   bool stands = true;  ///< true if the structure is in balance at φ = 0
 };
 
-/// Searches in one direction of tilting, `sign` = ±1. If the structure stands at φ = 0, the result is the tilt up to which it stands.
-/// Otherwise it is the tilt from which it would stand. Returns nothing if this is not within a right angle.
+/// Searches in one direction of tilting, `sign` = ±1. If the structure stands at φ = 0, the result is the tilt up to which it stands;
+/// otherwise the tilt from which it would stand. Returns nothing if there is no such tilt within a right angle.
 [[nodiscard]] std::optional<Collapse> collapse_of(const Blocks& blocks, double sign);
 
 } // namespace steplap

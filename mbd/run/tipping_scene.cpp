@@ -11,8 +11,8 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_rank = 1e-8;      // relative to the largest gradient of the rows
-constexpr double k_one_slope = 0.02; // rad; largest deviation of feet that are on one plane
+constexpr double k_rank = 1e-8;      // tolerance of the rank, relative to the largest gradient of the rows
+constexpr double k_one_slope = 0.02; // largest deviation, rad, of the directions of feet on one plane
 
 } // namespace
 
@@ -27,7 +27,7 @@ TippingScene::TippingScene(const LoadedModel& loaded, const State& state)
   find_components();
 }
 
-// Computes for each body the force and the couple about its centre of gravity from everything except gravity and contacts.
+// Computes for each body the force, and the couple about its centre of gravity, of all elements except contacts, without gravity.
 void TippingScene::find_loads() {
   Evaluation e = statics_.evaluation();
   std::vector<BodyForce> force(system_.bodies.size() + static_cast<std::size_t>(system_.links.size()));
@@ -58,7 +58,7 @@ void TippingScene::find_loads() {
   }
 }
 
-// Finds taut inextensible ropes that carry no hanging load. They prevent motions that would lengthen them.
+// Finds taut inextensible ropes that carry no hanging load. They act as constraints against lengthening.
 void TippingScene::find_stays() {
   for (const auto& [rope, friction] : one_sided_rows(system_)) {
     if (rope->left(statics_.motion().data()) > OneSidedRow::k_too_long * rope->length) continue;
@@ -88,7 +88,7 @@ Eigen::Matrix<double, 6, 1> TippingScene::gradient(const RowSpec& row) const {
   return Eigen::Map<const Eigen::Matrix<double, 6, 1>>(gradient_of(evaluate_row<false>(row, statics_.motion().data())).j);
 }
 
-// Returns true if joints within the component permit only rigid motions of it.
+// Returns true if the joints within the component permit only its motions as a rigid body.
 bool TippingScene::is_rigid(int component) const {
   std::vector<int> place(system_.bodies.size(), -1);
   int bodies = 0;
@@ -111,13 +111,13 @@ void TippingScene::add_component(int component, TippingPart& part) const {
     if (component_[i] == component) part[i] = 1;
 }
 
-// Returns the normal of the force on the part at a foot between the part and something else; zero for other feet.
+// Returns the normal of the force on the part at a foot between the part and a body outside it; zero for other feet.
 Vec2 TippingScene::push_on(const TippingPart& part, const Foot& foot) {
   if (part[foot.a] == part[foot.b]) return Vec2::Zero();
   return part[foot.a] ? foot.normal : Vec2(-foot.normal);
 }
 
-// Returns the component with everything that stands on it.
+// Returns the component together with everything that stands on it.
 std::optional<TippingPart> TippingScene::part_on(int component, std::string* why) const {
   const auto none = [why](const char* reason) -> std::optional<TippingPart> {
     if (why) *why = reason;
@@ -131,14 +131,14 @@ std::optional<TippingPart> TippingScene::part_on(int component, std::string* why
     is_changed = false;
     for (const Foot& foot : feet_) {
       const Vec2 push = push_on(part, foot);
-      if (!(push.dot(system_.gravity) > 0.0)) continue; // this foot supports the part
+      if (!(push.dot(system_.gravity) > 0.0)) continue; // a foot that supports the part is permitted
       const int above = part[foot.a] ? foot.b : foot.a;
       if (above == k_ground || !is_rigid(component_[above])) return none("what stands on it has joints that can move");
       add_component(component_[above], part);
       is_changed = true;
     }
   }
-  // Bodies added to the part may also stand on something else.
+  // Repeated until nothing changes, because bodies added to the part may stand on further ones.
   for (const Foot& foot : feet_) {
     const Vec2 push = push_on(part, foot);
     const int own = part[foot.a] ? foot.a : foot.b;
@@ -147,7 +147,7 @@ std::optional<TippingPart> TippingScene::part_on(int component, std::string* why
   const auto is_to_another = [&](int a, int b) {
     return part[a] != part[b] && a != k_ground && b != k_ground && !is_hung(a) && !is_hung(b);
   };
-  for (const PairJacobian& j : springs_) // the force changes if the other body moves
+  for (const PairJacobian& j : springs_) // the force of a spring to a body outside the part changes when the part tips
     if (is_to_another(j.a, j.b) && !j.stiffness.isZero()) return none("a spring or a servo ties it to another part that can move");
   for (const OneSidedRow* stay : stays_) {
     bool is_tied = false;

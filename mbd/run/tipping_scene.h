@@ -12,7 +12,7 @@
 
 namespace steplap {
 
-using TippingPart = std::vector<char>; ///< per body: true if it belongs to the part
+using TippingPart = std::vector<char>; ///< per body: belongs to the part
 
 /// Returns `r` turned counter-clockwise by a right angle.
 [[nodiscard]] inline Vec2 quarter_turn(const Vec2& r) { return {-r.y(), r.x()}; }
@@ -20,7 +20,7 @@ using TippingPart = std::vector<char>; ///< per body: true if it belongs to the 
 /// Bodies, feet, springs and loads of a pose. Keeps references to the model.
 class TippingScene {
 public:
-  static constexpr double k_still = 1e-6; ///< relative velocity below which a foot neither lifts nor sinks
+  static constexpr double k_still = 1e-6; ///< velocity of a foot, relative to the motion, below which it neither lifts nor sinks
 
   /// Analyses the pose of `state`. Keeps a reference to `loaded`.
   TippingScene(const LoadedModel& loaded, const State& state);
@@ -29,7 +29,7 @@ public:
   [[nodiscard]] const System& system() const { return system_; }
   /// Returns all touching contact points.
   [[nodiscard]] const std::vector<Foot>& feet() const { return feet_; }
-  /// Returns the taut inextensible ropes that carry no hanging load. They prevent motions that would lengthen them.
+  /// Returns the taut inextensible ropes that carry no hanging load. They act as constraints against lengthening.
   [[nodiscard]] const std::vector<const OneSidedRow*>& stays() const { return stays_; }
   /// Returns all freely hanging loads.
   [[nodiscard]] const std::vector<HungLoad>& hung() const { return hanging_.loads; }
@@ -43,16 +43,17 @@ public:
   [[nodiscard]] bool is_hung(int body) const { return hanging_.is_hung[body] != 0; }
   /// Returns the component of a body. A component is a set of bodies connected by constraint rows.
   [[nodiscard]] int component(int body) const { return component_[body]; }
-  /// Returns the number of each component once.
+  /// Returns the numbers of all components.
   [[nodiscard]] const std::vector<int>& components() const { return components_; }
   /// Returns true if the joints within the component permit only motions of it as a rigid body.
   [[nodiscard]] bool is_rigid(int component) const;
   /// Adds all bodies of the component to the part.
   void add_component(int component, TippingPart& part) const;
-  /// Returns the component with everything that stands on it. Returns nothing if some of this can move or also stands on something else.
-  /// `why` receives the reason, as a clause after "because", if the component cannot be judged as a part of another one either.
+  /// Returns the component together with everything that stands on it. Returns nothing if some of these bodies can move or also stand on
+  /// another body. `why` receives the reason, as a clause after "because", if the component cannot be judged as a part of another one
+  /// either.
   [[nodiscard]] std::optional<TippingPart> part_on(int component, std::string* why = nullptr) const;
-  /// Returns the normal of the force on the part at a foot between the part and something else; zero for other feet.
+  /// Returns the normal of the force on the part at a foot between the part and a body outside it; zero for other feet.
   [[nodiscard]] static Vec2 push_on(const TippingPart& part, const Foot& foot);
   /// Returns the gradient of a row's coordinate with respect to the poses of its two bodies.
   [[nodiscard]] Eigen::Matrix<double, 6, 1> gradient(const RowSpec& row) const;
@@ -79,8 +80,8 @@ private:
   std::vector<int> component_, components_;
 };
 
-/// Returns the collapses of parts that stand on several others together with these, if they collapse before any of them tips alone. `found`
-/// contains the margins of the parts alone.
+/// Returns the common collapses of parts that stand on several others, if they occur before any of the parts tips alone. `found`: margins
+/// of the single parts.
 [[nodiscard]] std::vector<Tipping> tipping_of_blocks(const TippingScene& scene, const std::vector<Tipping>& found);
 
 } // namespace steplap

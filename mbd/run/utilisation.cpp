@@ -10,17 +10,17 @@ namespace steplap {
 namespace {
 
 constexpr std::size_t k_most_frictions = 100;
-constexpr double k_unused = 1e-9; // smaller shares of a friction are rounding
+constexpr double k_unused = 1e-9; // utilisations of friction below this are rounding
 
 std::string last_part(const std::string& channel) { return channel.substr(channel.rfind('.') + 1); }
 std::string element_part(const std::string& channel) { return channel.substr(0, channel.rfind('.')); }
 
-// For kinds with a criterion of their own: the channel that it limits, and the text for it.
+// Built-in criteria of kinds: the channel that is limited, and the words for it.
 struct LimitedQuantity {
   const char* channel;
   const char* name;
   bool is_lower;  // the limit is a lower bound
-  const char* of; // quantity to which the share refers
+  const char* of; // text for 100 %
 };
 
 const LimitedQuantity* aspect_of(const std::string& channel) {
@@ -105,7 +105,7 @@ private:
     u.unit = c.unit;
     u.at = c.t;
     u.beyond = c.outcome == Verdict::inspect || c.outcome == Verdict::reject;
-    const bool is_settled = u.beyond && !c.reserve; // it slipped or broke, independently of rounding
+    const bool is_settled = u.beyond && !c.reserve; // the element slipped or broke, independently of rounding
     if (c.error && !is_settled) u.error = std::abs(*c.error * share->slope);
     u.detail = detail;
     u.text = shown_share(u.share, u.error, digits_) + " of " + of + (detail.empty() ? "" : ": " + detail);
@@ -122,7 +122,7 @@ private:
   }
   std::string shown_limit(const CriterionResult& c) const { return shown_quantity(*c.limit, c.unit, {}, digits_); }
 
-  // A criterion on a margin is met at 1 or at a larger margin that the model requires.
+  // Adds the utilisation of an element's own criterion. A margin must be at least 1, or the larger value that the model requires.
   void add_of_element(const CriterionResult& c) {
     const LimitedQuantity* aspect = aspect_of(c.channel);
     if (!aspect) return;
@@ -154,7 +154,7 @@ private:
         is_lower ? shown_value(c) + ", at least " + shown_limit(c) : size_of(c, asked) + " of " + shown_limit(c), "the limit");
   }
 
-  // Adds elements that are designed to break first and are therefore not judged.
+  // Adds ties, which are designed to break first and are therefore not judged.
   void add_ties() {
     for (const ChannelRange& range : report_.ranges()) {
       const std::string& name = range.channel->name;
@@ -174,7 +174,7 @@ private:
 
   struct Friction {
     std::string element;
-    const ChannelRange* used = nullptr; ///< range of its channel with the role friction_use
+    const ChannelRange* used = nullptr; ///< range of the element's channel with the role friction_use
     double share = 0.0, at = 0.0;
   };
 
@@ -225,11 +225,12 @@ std::vector<Utilisation> utilisations_of(const Report& report, const RangeIndex&
 }
 
 double reserve_of(const Report& report) {
-  constexpr double k_least = 1e-9; // the verdict decides the sign: caps and errors that no share contains can forbid "hold"
+  // Smallest reserve with the sign of the verdict: "hold" can also be prevented by findings and errors that no utilisation contains.
+  constexpr double k_least = 1e-9;
   double least = 1.0;
   for (const Utilisation& u : utilisations_of(report, RangeIndex(report.ranges()))) {
     if (!u.criterion) continue;
-    const double error = u.error.value_or(0.0); // unknown errors have made the verdict open
+    const double error = u.error.value_or(0.0); // for unknown errors the verdict is already open
     least = std::min(least, 1.0 - u.share - (std::isnan(error) ? 0.0 : error));
   }
   return report.judgement.verdict == Verdict::hold ? std::max(least, k_least) : std::min(least, -k_least);

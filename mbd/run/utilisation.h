@@ -20,9 +20,9 @@ namespace steplap {
 struct Utilisation {
   std::string name;                     ///< "front joint: friction", or the name of the criterion
   std::string channel;                  ///< channel whose extreme was used
-  double share = 0.0;                   ///< 1: the limit; above: exceeded; at most k_most_share
-  std::optional<double> value, limit;   ///< SI; empty for friction, where both change with time
-  std::string unit;                     ///< of value and limit
+  double share = 0.0;                   ///< utilisation: 1 at the limit, above if exceeded; at most k_most_share
+  std::optional<double> value, limit;   ///< SI; empty for friction, whose force and capacity both change with time
+  std::string unit;                     ///< unit of value and limit
   std::optional<double> at;             ///< time of the extreme, s
   std::optional<std::size_t> criterion; ///< index in Judgement::criteria; empty for friction and ties that no criterion limits
   bool beyond = false;                  ///< the limit was exceeded: criterion not met, slipped or broke
@@ -30,14 +30,14 @@ struct Utilisation {
   std::string detail;                   ///< "274 kN of 300 kN", "1.32, at least 1.2"
   std::string text;                     ///< "91 % of the limit: 274 kN of 300 kN"
 
-  static constexpr double k_most_share = 1000.0; ///< used if the capacity is zero
+  static constexpr double k_most_share = 1000.0; ///< utilisation if the capacity is zero
 };
 
 /// Returns utilisations in descending order, with at most a hundred friction elements.
 [[nodiscard]] std::vector<Utilisation> utilisations_of(const Report& report, const RangeIndex& ranges, ShownDigits digits = {});
 
-/// Returns what is left of the limits of a run: the least over all criteria of 1 − share − its estimated error, 0.2: 20 %; 1 if no criterion
-/// has a share. It is positive if the verdict is "hold", and negative otherwise.
+/// Returns the reserve of a run: the least of 1 − utilisation − its estimated error over all criteria (0.2 means 20 %); 1 if no criterion
+/// has a utilisation. It is positive if the verdict is "hold", and negative otherwise.
 [[nodiscard]] double reserve_of(const Report& report);
 
 } // namespace steplap

@@ -20,7 +20,7 @@ struct Settings {
 
 Settings settings_of(const LoadedModel& loaded, const RunOptions& options) {
   Settings s{loaded.model.simulation, loaded.model.output, {}};
-  // A setting that already equals the model's is not applied again.
+  // Assigns a setting, unless the model already has this value.
   const auto lay = [&](const std::string& path, const auto& value, const std::string& text, auto& field) {
     const std::string assignment = path + "=" + text;
     if (field == value && std::find(loaded.overrides.begin(), loaded.overrides.end(), assignment) != loaded.overrides.end()) return;
@@ -62,7 +62,7 @@ std::shared_ptr<const LoadedModel> with_settings(std::shared_ptr<const LoadedMod
   model.simulation = std::move(settings.simulation);
   model.output = std::move(settings.output);
   check(model, options);
-  const InputFiles read; // must exist until the signals are built
+  const InputFiles read; // must outlive the signals that are built here
   std::shared_ptr<const System> system = compile(model);
   if (!loaded->inputs.empty()) refuse_changed(read.files(), loaded->inputs);
   auto laid = std::make_shared<LoadedModel>(*load_completed(std::move(model), std::move(system), loaded->path, loaded->views));

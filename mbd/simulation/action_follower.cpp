@@ -10,13 +10,13 @@ namespace steplap {
 
 namespace {
 
-// Relative to time, or to the scene's characteristic time: times closer than this are equal.
+// Times that differ by less than this, relative to the time or to the scene's characteristic time, are equal.
 constexpr double k_same_instant = 1e-13;
-constexpr std::ptrdiff_t k_most_at_once = 20; // executions of one action at one time, if events between its executions trigger it
-                                              // repeatedly
+// Executions of one action at one time, if events between its executions trigger it repeatedly.
+constexpr std::ptrdiff_t k_most_at_once = 20;
 
 RunStatistics sum_of(const RunStatistics& a, const RunStatistics& b) {
-  RunStatistics sum = b; // dissipated energy and work continue over all legs
+  RunStatistics sum = b; // dissipated energy and work of `b` already contain those of earlier legs
   sum.steps += a.steps;
   sum.rejections += a.rejections;
   sum.evaluations += a.evaluations;
@@ -25,7 +25,7 @@ RunStatistics sum_of(const RunStatistics& a, const RunStatistics& b) {
   sum.storms += a.storms;
   sum.max_position_residual = std::max(a.max_position_residual, b.max_position_residual);
   sum.max_velocity_residual = std::max(a.max_velocity_residual, b.max_velocity_residual);
-  sum.energy_residual = a.energy_residual + b.energy_residual; // each refers to the start of its own leg
+  sum.energy_residual = a.energy_residual + b.energy_residual; // the residual of a leg is counted from its own start
   sum.energy_exchanged = std::max(a.energy_exchanged, b.energy_exchanged);
   sum.energy_scale = std::max(a.energy_scale, b.energy_scale);
   sum.energy_worst_step = std::max(a.energy_worst_step, b.energy_worst_step);
@@ -57,7 +57,7 @@ ChannelRange joined(const ChannelRange& a, const ChannelRange& b) {
   return both;
 }
 
-// Returns the element that an element is a part of, for example the joint of an interface; −1: none.
+// Returns the index of the element to which `element` belongs, for example the joint of an interface; −1 if there is none.
 int whole_of(const Model& model, std::size_t element) {
   const ElementEntry& part = model.elements[element];
   for (const Field& field : part.kind->fields.fields()) {
@@ -79,7 +79,7 @@ void refuse_other_channels(const System& first, const System& system) {
                            "'): give the element a value of the field that is set from the start, which the action then changes");
 }
 
-// Adds the channels that were added to the first system after compilation, in the same order. Channels of elements that do not act are
+// Adds to `system` the channels that were added to the first system after compilation, in the same order. Channels of inactive elements are
 // zero.
 void add_channels(const ActionGroup& group, const System& first, System& system) {
   const std::size_t own = system.channels.size();
@@ -105,8 +105,8 @@ ActionFollower::ActionFollower(const System& system) : first_(system), group_(*a
   first.acts = acting_elements(*group_.model);
 }
 
-// All actions due at one time are executed in the order of the file before their changes take effect. If a value is set twice, the last one
-// counts.
+// All actions due at one time are executed in the order of the file, then their changes take effect together. If a value is set twice, the
+// last one counts.
 void ActionFollower::act(std::unique_ptr<RunLeg>& leg) {
   const double t = leg->state().t;
   if (std::abs(t - instant_) > k_same_instant * std::max(first_.scale.time(), std::abs(t))) at_once_.clear();
@@ -212,7 +212,7 @@ void ActionFollower::change_over(std::unique_ptr<RunLeg>& leg, const Arrangement
     ranges_.push_back(leg->ranges());
     for (FaceTravel& travel : leg->face_travels()) face_travels_.push_back(std::move(travel));
     leg = std::move(next);
-  } catch (const ModelError& error) { // the elements are inconsistent after the changes
+  } catch (const ModelError& error) { // the changed elements are inconsistent
     throw NumericalFailure("at t = " + rounded_text(leg->state().t, 12) + " s action '" + group_.entries[at_once_.back()].name +
                            "' makes a machine that cannot be: " + error.diagnostics().front().message);
   }

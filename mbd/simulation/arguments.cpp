@@ -30,7 +30,7 @@ void require_finite(const std::vector<double>& values, const std::string& what) 
     throw std::invalid_argument("number " + std::to_string(bad - values.begin()) + " of the state's " + what + " is not finite");
 }
 
-// Returns both members of all entries, one entry after the other.
+// Returns both members of all entries as one vector: first and second of entry 0, then of entry 1, and so on.
 template <class T> std::vector<double> numbers_of(const std::vector<T>& entries, double T::*first, double T::*second) {
   std::vector<double> numbers;
   for (const T& entry : entries) numbers.insert(numbers.end(), {entry.*first, entry.*second});

@@ -13,10 +13,11 @@ namespace steplap {
 
 namespace {
 
-// Largest gap that counts as fitting, relative to the scene's length. Events and joints are far more accurate.
+// Largest gap, relative to the scene's length, with which a joint can be activated. Events and joints are far more accurate.
 constexpr double k_fit = 1e-6;
 
-// Copies the data of each element in `from` to its place in `to`. `of_from` and `of_to` give the element of each place.
+// Calls copy(i, j) for each entry i of `from` and the corresponding entry j of `to`. `of_from` and `of_to` give the element of each entry.
+// Only elements flagged in `goes_on` are copied.
 template <class F>
 void carry(const std::vector<int>& of_from, const std::vector<int>& of_to, const std::vector<char>& goes_on, const F& copy) {
   std::vector<std::vector<std::size_t>> places(goes_on.size());
@@ -34,7 +35,8 @@ template <class Units> std::vector<int> elements_of(const Units& units) {
   return elements;
 }
 
-// Returns the element of each inner state. Own states have consecutive places, whatever element was compiled first that reads one.
+// Returns the element of each inner state. Own states of the model get a common index after all elements, because they belong to no
+// element: their inner states are consecutive.
 std::vector<int> elements_of_inner(const System& system, int own_states) {
   std::vector<int> elements = system.inner_elements;
   if (const OwnStateGroup* const group = own_state_group(system))
@@ -63,7 +65,7 @@ double stored_energy(const System& system, const State& state) {
       {name});
 }
 
-// Elements with inner states can only be activated at the start of a run, because these states have no values otherwise.
+// Throws if an element with inner states is activated during a run, because these states would have no values.
 void refuse_inner(const Changeover& change, const State& state) {
   const OwnStateGroup* const own = own_state_group(change.to);
   for (std::size_t i = 0; i < change.to.inner_elements.size(); ++i) {
@@ -109,15 +111,16 @@ State carried(const Changeover& change, const State& state) {
   next.work = state.work;
   std::vector<char> goes_on = change.acts;
   for (std::size_t i = 0; i < goes_on.size(); ++i) goes_on[i] = static_cast<char>(goes_on[i] != 0 && change.acted[i] != 0);
-  goes_on.push_back(1);                                                               // own states
-  for (FrictionState& friction : next.friction) friction.phase = FrictionPhase::free; // until the pressed contacts are determined
+  goes_on.push_back(1);                                                               // entry for own states (elements_of_inner())
+  for (FrictionState& friction : next.friction) friction.phase = FrictionPhase::free; // provisional, until the pressed contacts are known
   carry(elements_of(change.from.units), elements_of(change.to.units), goes_on,
         [&](std::size_t a, std::size_t b) { next.mode[b] = state.mode[a]; });
   carry(elements_of(change.from.frictions), elements_of(change.to.frictions), goes_on,
         [&](std::size_t a, std::size_t b) { next.friction[b] = state.friction[a]; });
   carry(change.from.base_elements, change.to.base_elements, goes_on, [&](std::size_t a, std::size_t b) {
     next.bases[b].rate = state.bases[a].rate;
-    const bool is_set_anew = change.from.initial_bases[a].value != change.to.initial_bases[b].value; // the length of a rod or a rope
+    // a change of the length of a rod or rope
+    const bool is_set_anew = change.from.initial_bases[a].value != change.to.initial_bases[b].value;
     if (!is_set_anew) next.bases[b].value = state.bases[a].value;
   });
   carry(change.from.impact_elements, change.to.impact_elements, goes_on,
@@ -143,7 +146,7 @@ void place_what_closes(const Changeover& change, State& state) {
   }
   for (const OneSidedUnit& rope : one_sided_rows(change.to))
     if (change.begins[static_cast<std::size_t>(rope.row->row.element)] != 0)
-      place_rope(change, rope, motion, state); // also a rope whose length was set
+      place_rope(change, rope, motion, state); // includes ropes whose length was changed
 }
 
 void book_stored_energy(const Changeover& change, const State& before, State& after) {

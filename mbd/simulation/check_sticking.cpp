@@ -13,8 +13,8 @@ namespace steplap {
 
 void check_sticking(const System& system, const State& state, const LoadSharing* sharing, double t,
                     const std::vector<double>& event_value) {
-  constexpr double k_stuck_beyond = 1e-6; // the mode problem determines forces to 1e-9 of the capacities, and events are located to
-                                          // rounding
+  // Limit relative to the capacity: the mode problem is accurate to 1e-9 of it, and events are located to rounding.
+  constexpr double k_stuck_beyond = 1e-6;
   for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
     const FrictionUnit& unit = system.frictions[f];
     if (unit.friction->dimension() != 1 || unit.friction->never_slips()) continue;
@@ -22,7 +22,7 @@ void check_sticking(const System& system, const State& state, const LoadSharing*
     const double one = event_value[unit.slot(FrictionWatch::first)], other = event_value[unit.slot(FrictionWatch::second)];
     const std::string& name = system.element_names[unit.element];
     if (const OneWayLock* const lock = one_way_lock(unit)) {
-      const double beyond = -std::min(one, other); // the bounded side
+      const double beyond = -std::min(one, other); // the bounded side of a one-way clutch
       if (beyond <= k_stuck_beyond * lock->drag() + slight_force(system, *lock->rows(state.friction[f]))) continue;
       throw ElementFailure(
           "at t = " + number_text(t) + " s the one-way clutch '" + name + "' holds back with " + rounded_text(beyond + lock->drag()) +

@@ -10,29 +10,29 @@ namespace steplap {
 
 namespace {
 
-// Relative accuracy of positions due to projection onto the constraints (1e-12 m of q₀ = 1e-3 m), independent of the steps.
+// Smallest tolerance in the bound of a step: the accuracy of positions by projection onto the constraints (1e-12 m of q₀ = 1e-3 m).
 constexpr double k_projected = 1e-9;
-// Relative to scale(): an energy error of a step above this ends the run, whatever the tolerance; the only limit for fixed steps. It is not
-// derived from error bounds but from the use of the result: five times the value above which the run is not trusted (k_untrusted).
+// Largest permitted energy error of a step relative to scale(), whatever the tolerance. It is the only limit for fixed steps. The value
+// follows from the use of the result, not from error bounds: five times k_untrusted.
 constexpr double k_most_share = 5e-2;
-// Relative to scale(): largest energy that may be removed at one event by setting velocities to zero, unless the tolerance allows more.
-// Residual velocities by rounding have far less, an impact far more.
+// Largest energy, relative to scale(), that setting residual velocities to zero may remove at one event, unless the tolerance allows more.
+// Rounding gives far less, an impact far more.
 constexpr double k_settled_share = 1e-4;
-// v₀/L relative to the scene's characteristic rate: velocities below v₀ have the absolute accuracy tol v₀ (Integrator: q₀ = 1e-3 L, at 60/s
-// for bodies of 1 m).
+// v₀/L relative to the scene's characteristic rate. Velocities below v₀ have the absolute accuracy tol v₀ (Integrator: q₀ = 1e-3 L times
+// 60/s for bodies of 1 m).
 constexpr double k_floor_rate = 0.06 / k_metre_rate;
-// Rotation rate, 1/s, whose kinetic energy is the smallest scale for the balance of a run; for a single body it is 3.7 T₀. It is chosen so
-// that no run is distrusted because of energies that its tolerance neglects.
+// Rotation rate, 1/s, whose kinetic energy is the smallest scale for the balance of a run, so that energies that the tolerance neglects
+// cannot make a run untrusted. For a single body it is 3.7 T₀.
 constexpr double k_least_rate = 0.2;
 
 struct Kinetic {
-  double mass = 0.0, px = 0.0, py = 0.0; ///< kg, kg m/s
+  double mass = 0.0, px = 0.0, py = 0.0; ///< mass, kg, and momentum, kg m/s, of all bodies
   double total = 0.0, about_centre = 0.0;
-  double of_floor = 0.0; ///< T₀, for velocities of the absolute part of the tolerances
-  double least = 0.0;    ///< smallest scale for the balance of a run
+  double of_floor = 0.0; ///< T₀, J: kinetic energy at the velocities below which tolerances are absolute
+  double least = 0.0;    ///< smallest scale for the balance of a run, J
 };
 
-/// Returns T₀, J, of a body whose centre moves at v₀ = `rate` · L along both axes and which rotates at `rate`.
+/// Returns T₀, J, of a body whose centre moves with v₀ = `rate` · L along both axes and which rotates with `rate`, 1/s. `size`: L, m.
 double floor_energy(double mass, double inertia, double size, double rate) {
   return 0.5 * rate * rate * (2.0 * mass * size * size + inertia);
 }
@@ -45,11 +45,11 @@ double size_of(const System& system) {
   return size > 0.0 ? size : 1.0;
 }
 
-/// `size` is L, m.
+/// Returns the kinetic energies of all bodies at the packed state y. `size`: L, m.
 Kinetic kinetic_energy(Dynamics& dynamics, const double* y, double size) {
   const double rate = k_floor_rate * scene_rate(dynamics.system());
   const Layout& layout = dynamics.layout();
-  const double* const v = dynamics.cluster_rates(y); // 3 numbers per cluster
+  const double* const v = dynamics.cluster_rates(y); // x, y, θ of each cluster
   Kinetic sum;
   for (int k = 0; k < layout.cluster_count(); ++k) {
     const Cluster& c = layout.clusters[k];
@@ -68,8 +68,8 @@ Kinetic kinetic_energy(Dynamics& dynamics, const double* y, double size) {
 
 } // namespace
 
-// Measured, not derived (docs/explanation/theory.md): at the onset of one slip the assumptions of the derivation were violated by a factor
-// of 19.
+// Measured, not derived (docs/explanation/theory.md): at one onset of slip the error exceeded the bound by a factor of 19, because the
+// assumptions of the derivation were violated.
 const double EnergyAccount::k_reserve = 100.0;
 
 double EnergyAccount::scale() const { return std::max({exchanged_, peak_about_centre_, floor_}); }
@@ -123,8 +123,8 @@ void EnergyAccount::check_step(Dynamics& dynamics, double t, const double* y) {
   judge_step(dynamics, t, last_ - before, dissipated - dissipated_);
 }
 
-// `made`: energy gained in the step. `given_back`: decrease of the dissipated energy, which friction and dampers never return, so that it
-// is an error as well.
+// `made`: energy gained in the step, J. `given_back`: decrease of the dissipated energy, J. Friction and dampers never return energy, so
+// this is an error, too.
 void EnergyAccount::judge_step(const Dynamics& dynamics, double t, double made, double given_back) {
   double allowed = k_most_share * std::max(scale(), peak_kinetic_);
   const double beyond = std::max(std::abs(made), given_back) - rounding();
@@ -142,7 +142,7 @@ void EnergyAccount::judge_step(const Dynamics& dynamics, double t, double made, 
   throw NumericalFailure(step + (made > 0.0 ? "made " : "lost ") + number_text(std::abs(made)) + rest);
 }
 
-// A body at rest within the accuracy of a step may be set to rest; this changes velocities and energy by amounts of that accuracy.
+// Throws if the removed energy is larger than that of a body at rest within the accuracy of a step.
 void EnergyAccount::check_settled(double t, double lost) const {
   const double of = std::max(scale(), peak_kinetic_);
   const double known = std::min(step_bound(tolerance_, dimension_, turned_over(), of_floor_), k_most_share * of);

@@ -8,9 +8,9 @@ namespace steplap {
 
 namespace {
 
-// Returns the tolerance for channels without unit. They have no common scale, but for most of them the value 1 is significant. Some have
-// poles, such as a margin while a joint is unloaded; their range then says nothing about the minimum, which is located to 1e-6 of itself.
-// Before a load begins such a value is the reciprocal of a rounding error, and only its magnitude is determined.
+// Returns the tolerance for extremes of a channel without unit. Such channels have no common scale, but for most of them the value 1 is
+// significant. Some have poles, such as a margin while a joint is unloaded; their range then gives no scale for the minimum, which is
+// located to 1e-6 of itself. Before a load begins such a value is the reciprocal of a rounding error, and only its magnitude is meaningful.
 double tolerance_of_number(const ChannelRange& channel, double resolution, double rounding) {
   const double range = channel.high.value - channel.low.value;
   const double near = std::min(std::abs(channel.low.value), std::abs(channel.high.value));
@@ -22,7 +22,7 @@ double tolerance_of_number(const ChannelRange& channel, double resolution, doubl
 
 } // namespace
 
-// Returns the accuracy to which the extremes of a channel are located.
+// Returns the accuracy to which extremes of a channel are located, in the unit of the channel.
 double ExtremeFinder::tolerance(std::size_t c) const {
   if (ranges_[c].channel->unit.empty()) return tolerance_of_number(ranges_[c], k_resolution, k_rounded_range);
   const Kind& kind = kinds_[kind_[c]];
@@ -32,8 +32,8 @@ double ExtremeFinder::tolerance(std::size_t c) const {
   return jitter_.empty() ? wanted : std::max(wanted, jitter_[c]);
 }
 
-// Sets magnitudes for judging rounding errors while everything is at rest: a length, and for accelerations the forces at the start divided
-// by the total mass.
+// Sets the magnitudes against which rounding errors are compared while everything is at rest: a length, and for accelerations the forces at
+// the start divided by the total mass.
 void ExtremeFinder::set_scales() {
   const auto kind_of = [this](const char* unit) -> Kind* {
     for (std::size_t c = 0; c < count_; ++c)

@@ -1,9 +1,9 @@
-// ExtremeFinder: extremes of channels with a kink, by golden sections on the motion itself.
+// ExtremeFinder: extremes of channels with a kink, by golden-section search on the motion itself.
 //
-// The search is made for one channel after the other, but a kink usually affects many: when a joint starts to slip, its wrench, its
-// utilisation and all related accelerations change together, and their searches visit the same points. The values of all channels at a
-// point are therefore stored for the channels that follow. They are bit-identical to separate evaluations. Noisy channels do not profit,
-// and are soon excluded: evaluating all of them at each point would cost the square of their number.
+// The search treats one channel after the other, but a kink usually affects many: when a joint starts to slip, its wrench, its utilisation
+// and all related accelerations change together, and their searches evaluate the same points. The values of all channels at a point are
+// therefore stored for the channels that follow; they are bit-identical to separate evaluations. For noisy channels, whose searches
+// evaluate different points, storing soon stops: evaluating all of them at each point would cost the square of their number.
 #include "mbd/simulation/extremes.h"
 
 #include "mbd/base/diagnostics.h"
@@ -20,20 +20,20 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_last = NodePolynomial::k_last; // last node, at the end of the stretch
+constexpr int k_last = NodePolynomial::k_last; // index of the last node, at the end of the stretch
 constexpr int k_most_sections = 40;
-constexpr double k_same_place = 1e-7; // relative to the stretch: a smaller change of position changes a maximum by its square
+constexpr double k_same_place = 1e-7; // smallest interval relative to the stretch; its square is the remaining error of a maximum
 constexpr double k_golden = 0.3819660112501051;
-constexpr std::size_t k_trial = 50, k_least_use = 4;       // number of points before their usefulness is checked; at least one in so many
-                                                           // must be reused
-constexpr std::size_t k_most_kept = std::size_t{1} << 20U; // number of stored values: 16 MB; for large scenes this allows few points
+// Storing stops if after this number of points fewer than one in k_least_use was reused.
+constexpr std::size_t k_trial = 50, k_least_use = 4;
+constexpr std::size_t k_most_kept = std::size_t{1} << 20U; // largest number of stored values (16 MB)
 
-// Finds the nodes around which golden sections are made: those higher than both neighbours, the highest first.
+// Finds the nodes that are higher than both neighbours, the highest first. Golden-section searches start there.
 int tops_of(const std::vector<std::vector<double>>& nodes, std::size_t c, double sign, std::array<int, k_last - 1>& middles) {
   int count = 0;
   for (int middle = 1; middle < k_last; ++middle) {
     const auto is_below = [&](int i) { return !(sign * nodes[i][c] > sign * nodes[middle][c]); };
-    // If an end is the highest node the curve may rise further next to it.
+    // The neighbour of an end may count as highest even if the end is higher, because the curve may have a maximum between them.
     const bool is_top = (is_below(middle - 1) || middle == 1) && (is_below(middle + 1) || middle == k_last - 1);
     if (is_top) middles[count++] = middle;
   }
@@ -41,7 +41,8 @@ int tops_of(const std::vector<std::vector<double>>& nodes, std::size_t c, double
   return count;
 }
 
-// Finds the maximum of value() between a and b by golden sections, until the curve is flat to flat(), which evaluations may change.
+// Finds the maximum of value() between a and b by golden sections, until the values differ by at most flat(). Evaluations may change
+// flat().
 template <class Value, class Flat> void find_top(double a, double b, const Value& value, const Flat& flat) {
   double p = a + k_golden * (b - a), q = b - k_golden * (b - a), at_p = value(p), at_q = value(q);
   for (int i = 0; i < k_most_sections && b - a > k_same_place; ++i) {
@@ -60,16 +61,16 @@ template <class Value, class Flat> void find_top(double a, double b, const Value
   }
 }
 
-/// Points evaluated in the present stretch, with the values of channels there.
+/// Evaluated points of the present stretch, with the values of channels there.
 class Places {
 public:
   struct Place {
-    bool is_singular = false;                 ///< near a singular position of joints
-    std::vector<std::optional<double>> value; ///< in the order of the open channels; empty for channels already finished, or if the
-                                              ///< evaluation failed
+    bool is_singular = false; ///< near a singular position of joints
+    /// Values in the order of the open channels; empty for channels already finished, or if the evaluation failed.
+    std::vector<std::optional<double>> value;
   };
 
-  /// Returns the object of this thread, whose memory is reused for all stretches.
+  /// Returns the object of this thread; its memory is reused for all stretches.
   static Places& of_thread() {
     static thread_local Places places;
     return places;
@@ -78,15 +79,15 @@ public:
     count_ = made_ = used_ = 0;
     number_.clear();
   }
-  /// Returns true if stored points are reused often enough. Noisy channels each visit other points.
+  /// Returns true if stored points are reused often enough.
   [[nodiscard]] bool are_of_use() const { return made_ < k_trial || k_least_use * used_ >= made_; }
   void note_use() { ++used_; }
-  /// Returns the point if the value of the channel is known there, otherwise null.
+  /// Returns the point if the value of the channel is stored there, otherwise null.
   [[nodiscard]] const Place* at(double theta, std::size_t channel) const {
     const auto known = number_.find(theta);
     return known != number_.end() && places_[known->second].value[channel] ? &places_[known->second] : nullptr;
   }
-  /// Adds a point for the given number of channels. It replaces an earlier one with the same theta.
+  /// Adds a point at theta with empty values of `channels` channels. Replaces an earlier point with the same theta.
   [[nodiscard]] Place& add(double theta, std::size_t channels) {
     if ((count_ + 1) * channels > k_most_kept) clear();
     if (count_ == places_.size()) places_.emplace_back();
@@ -99,16 +100,16 @@ public:
   }
 
 private:
-  std::vector<Place> places_;                      ///< entries after count_ are reserve
-  std::size_t count_ = 0, made_ = 0, used_ = 0;    ///< points at present; made in the stretch; number of times one was reused
-  std::unordered_map<double, std::size_t> number_; ///< index by theta; a noisy channel has thousands
+  std::vector<Place> places_;                      ///< the first count_ entries are in use
+  std::size_t count_ = 0, made_ = 0, used_ = 0;    ///< number of points stored; computed in the stretch; reused
+  std::unordered_map<double, std::size_t> number_; ///< index of a point by theta
 };
 
 } // namespace
 
 void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dynamics) {
   Places& places = Places::of_thread();
-  if (c == open_.front()) places.clear(); // a new stretch
+  if (c == open_.front()) places.clear(); // first channel of a new stretch
   const auto own = static_cast<std::size_t>(std::find(open_.begin(), open_.end(), c) - open_.begin());
   const auto search_all_extremes = [&](double theta) -> const Places::Place& {
     const Snapshot snapshot = evaluate_dense(theta, integrator, dynamics);
@@ -118,7 +119,7 @@ void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dyn
     for (std::size_t k = own + 1; k < open_.size() && places.are_of_use(); ++k) {
       try {
         place.value[k] = ranges_[open_[k]].channel->value(snapshot);
-      } catch (const NumericalFailure&) { // the channel's own evaluation will report it, if it comes here
+      } catch (const NumericalFailure&) { // not stored: reported if the channel's own search evaluates this point
       }
     }
     return place;

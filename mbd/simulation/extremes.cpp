@@ -17,34 +17,34 @@ namespace {
 // Returns the shortest period of the harmonics of loads and drives around t, s; infinite if there are none.
 double shortest_period(const System& system, double t) { return 2.0 * std::numbers::pi / system.fastest_at(t); }
 
-constexpr int k_last = NodePolynomial::k_last; // last node, at the end of the stretch
+constexpr int k_last = NodePolynomial::k_last; // index of the last node, at the end of the stretch
 constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
 
-// Safety factor of the curvature: the second difference of three ends may underestimate it by this factor.
+// Safety factor of the curvature, which the second difference of three ends may underestimate.
 constexpr double k_surprise = 3.0;
-// Weight of the curvature in earlier stretches: long steps may meet an oscillation where it is nearly straight.
+// Weight of the curvature from earlier stretches, because a long step may contain an oscillation whose ends show no curvature.
 constexpr double k_remembered = 0.5;
 constexpr double k_samples_per_period = 8.0; // samples per period of the fastest load
-constexpr double k_within_reach = 0.25;      // relative to the range of a channel: values farther from both extremes are ignored if the
-                                             // curvature is small enough
-constexpr double k_bit_of_slack = 0.1;       // accuracy of a polynomial's maximum, relative to the tolerance
-// One estimate in a hundred is exceeded by up to this factor. A maximum whose error estimate times this factor is not below the tolerance
-// is evaluated.
+// Distance from both extremes, relative to the range of a channel, above which values are ignored if the curvature is small enough.
+constexpr double k_within_reach = 0.25;
+constexpr double k_bit_of_slack = 0.1; // accuracy of a polynomial's maximum, relative to the tolerance
+// One error estimate in a hundred is too small by up to this factor. A maximum is evaluated if its estimate times this factor exceeds the
+// tolerance.
 constexpr double k_safety = 3.0;
-constexpr double k_same_crossing = 1e-10; // relative to the stretch
-// Up to this number of channels each is searched separately without testing for rounding noise.
+constexpr double k_same_crossing = 1e-10; // accuracy of crossing times, relative to the stretch
+// At most this number of channels are searched separately without a test for rounding noise.
 constexpr std::size_t k_few = 8;
 constexpr int k_most_probes = 8;
-constexpr double k_hair = 1.25e-4;     // relative to the stretch: a time shift for which smooth curves and kinks change by 1/100 of the
-                                       // differences between nodes
-constexpr double k_jitter = 0.25;      // relative to the differences between nodes: a channel that changes by more over a few such shifts
-                                       // is noise
-constexpr double k_most_jitter = 1e-6; // relative to the largest value in the same unit: a larger change is not rounding
-// Error of the linear extrapolation over two stretches, relative to the range of a channel. Below the first value stretches of fixed steps
-// are lengthened, above the second shortened.
+// Time shift of the test for rounding noise, relative to the stretch: smooth curves and kinks change by 1/100 of the differences between nodes
+constexpr double k_hair = 1.25e-4;
+// a channel that changes by more over a few time shifts, relative to the differences between nodes, is noise
+constexpr double k_jitter = 0.25;
+constexpr double k_most_jitter = 1e-6; // a change above this fraction of the largest value in the same unit is not rounding
+// Limits of the error of linear extrapolation over two stretches, relative to the range of a channel. Below the first limit stretches of
+// fixed steps are lengthened, above the second shortened.
 constexpr double k_well_resolved = 0.01, k_badly_resolved = 0.05;
 
-// Returns true for channels with codes. They change at events only, so the ends of stretches suffice.
+// Returns true for channels whose values are codes. They change only at events, so the ends of stretches contain their extremes.
 bool is_mode(const Channel& channel) { return !channel.codes.empty(); }
 
 } // namespace
@@ -114,14 +114,15 @@ void ExtremeFinder::take(std::size_t c, double t, double value) {
   kind.largest = std::max(kind.largest, std::abs(value));
 }
 
-// Evaluates all channels at an end of a stretch; without `is_everything` only those that their bounds do not exclude.
+// Evaluates channels at an end of a stretch: all, or without `is_everything` only those whose extremes may be exceeded according to their
+// bounds.
 void ExtremeFinder::evaluate(double t, const Snapshot& snapshot, double* values, bool is_everything) {
   for (const std::size_t c : tracked_)
     if (is_everything || !is_ruled_out(c)) take(c, t, snapshot, values);
     else values[c] = k_unknown;
 }
 
-// Determines which expensive channels may exceed their extremes, from their bounds and the change of these since the last end.
+// Determines which expensive channels may exceed their extremes, from their bounds at the last two ends.
 void ExtremeFinder::screen(const Snapshot& snapshot) {
   std::swap(bounds_, bounds_before_);
   for (const std::size_t c : tracked_) {
@@ -156,7 +157,7 @@ void ExtremeFinder::begin(double t, const Snapshot& snapshot) {
   longest_ = 1;
 }
 
-// Gives the search for extremes of formulas access to the stretch that starts at t_.
+// Access of the extreme search for formulas (FormulaExtremes) to the stretch that starts at t_.
 class ExtremeFinder::Site : public ExtremeSite {
 public:
   Site(ExtremeFinder& finder, double h, Integrator* integrator, Dynamics* dynamics)
@@ -169,11 +170,11 @@ public:
 private:
   ExtremeFinder& finder_;
   double h_;
-  Integrator* integrator_; ///< null, as dynamics_, if there is no dense output
+  Integrator* integrator_; ///< null, like dynamics_, if there is no dense output
   Dynamics* dynamics_;
 };
 
-// For methods that determine contact modes themselves: only the ends of steps are known, with straight lines between them.
+// Passes a step of a method that determines contact modes itself: only the ends are known, with straight lines between them.
 void ExtremeFinder::pass_between(double t, const Snapshot& snapshot) {
   Site site(*this, t - t_, nullptr, nullptr);
   formulas_->arrive(snapshot);
@@ -224,7 +225,7 @@ void ExtremeFinder::end_at(double t, Integrator& integrator, Dynamics& dynamics)
 }
 
 void ExtremeFinder::end_stretch(double t, const double* dy, Integrator& integrator, Dynamics& dynamics) {
-  // While nothing moves a step may be longer than many periods of a load. It is then divided into pieces.
+  // A step without motion may be longer than many periods of a load. Such a step is divided into pieces.
   const double begin = t_, pieces = std::ceil((t - t_) / shortest_period(system_, 0.5 * (t_ + t)) * k_samples_per_period / k_last);
   for (double i = 1.0; i < pieces; ++i) {
     const double piece_end = begin + i / pieces * (t - begin);
@@ -232,7 +233,7 @@ void ExtremeFinder::end_stretch(double t, const double* dy, Integrator& integrat
     dynamics.rates(piece_end, y_.data(), dy_.data());
     arrive(piece_end, dynamics.snapshot(dy_.data()), integrator, dynamics);
   }
-  if (pieces > 1.0) { // `dy` belonged to the end and has been overwritten
+  if (pieces > 1.0) { // `dy` of the end has been overwritten and is computed again
     state_at(t, integrator, dynamics);
     dynamics.rates(t, y_.data(), dy_.data());
     dy = dy_.data();
@@ -250,7 +251,7 @@ void ExtremeFinder::arrive(double t, const Snapshot& snapshot, Integrator& integ
   formulas_->arrive(snapshot);
   faces_.arrive(snapshot);
   const bool is_unsure = is_unsure_;
-  is_unsure_ = was_unsure; // applies to the inside of the stretch
+  is_unsure_ = was_unsure; // the flag at the start applies to the inside of the stretch
   close(t, integrator, dynamics);
   is_unsure_ = is_unsure;
 }
@@ -305,26 +306,26 @@ bool ExtremeFinder::turns_inside(std::size_t c, double h) const {
   return theta > 0.0 && theta < 1.0 && (s0 + b * theta) * s0 <= 0.0;
 }
 
-// Collects in open_ the channels that may have an extreme of the run inside the stretch. Returns true if there are any.
+// Collects in open_ the channels that may exceed their extremes of the run inside the stretch. Returns true if there are any.
 bool ExtremeFinder::suspect(double h) {
   open_.clear();
   const double *const first = node_[0].data(), *const end = node_[k_last].data(), *const before = before_.data();
   const double h_last = h_last_, share = h / h_last, halves = 1.0 + h_last / h,
-               square = h * h; // contains the curvature of the previous stretch, if there is one
+               square = h * h; // h² converts between second differences of this stretch and curvature per s²
   for (const std::size_t c : tracked_) {
     const double a = first[c], b = end[c];
     ChannelSearchState& curve = curve_[c];
     curve.is_open = false;
     curve.error = std::numeric_limits<double>::infinity();
-    if (h_last > 0.0 && a == b && a == before[c] && curvature_[c] == 0.0 && rate_of_[c] < 0) continue; // at rest
+    if (h_last > 0.0 && a == b && a == before[c] && curvature_[c] == 0.0 && rate_of_[c] < 0) continue; // channel at rest
     if (is_mode(*ranges_[c].channel) || formulas_->is_formula(c) || is_ruled_out(c) || std::isinf(a) || std::isinf(b)) continue;
     const double slope = b - a, last = h_last > 0.0 ? (a - before[c]) * share : k_unknown;
-    if (!std::isnan(slope) && !std::isnan(last)) { // rates of change over this stretch and over the same duration before it
+    if (!std::isnan(slope) && !std::isnan(last)) { // change over this stretch, and over the same duration before
       const double bend_now = std::abs(slope - last) / halves;
       curvature_[c] = std::max(bend_now / square, k_remembered * curvature_[c]);
       const double bend = k_surprise * curvature_[c] * h * h;
       const bool turns = turns_inside(c, h);
-      if (std::abs(slope) > bend && !turns) continue; // monotonic
+      if (std::abs(slope) > bend && !turns) continue; // monotonic: no extreme inside
       const double slack = tolerance(c);
       const double gain = 0.25 * (turns ? std::max({bend, std::abs(h * at(rate_of_[c], 0)), std::abs(h * at(rate_of_[c], k_last))}) : bend);
       const ChannelRange& r = ranges_[c];
@@ -356,14 +357,14 @@ static double interpolated(const std::vector<std::vector<double>>& nodes, std::s
   return above / weights.sum;
 }
 
-// Returns true if the search for channel c is finished after the nodes of `level`. If its polynomial is accurate enough its extremes are
-// stored.
+// Ends the search for channel c after the nodes of `level` if its polynomial is accurate enough or no extreme can be exceeded. Stores the
+// extremes found, or puts uncertain ones into unchecked_. Returns false if more nodes are needed.
 bool ExtremeFinder::settle(std::size_t c, int level) {
   const int n = 1 << level;
   const double slack = tolerance(c);
   const ChannelRange& r = ranges_[c];
-  // The error of the polynomial of half the degree is known at the new nodes. For a smooth curve doubling the number of nodes squares the
-  // relative error.
+  // curve_[c].error is the deviation of the polynomial of half the degree at the new nodes. For a smooth curve, doubling the number of
+  // nodes squares the relative error.
   NodePolynomial::Values v;
   const std::vector<double>* row = node_.data();
   double least = (*row)[c], most = least, sum = 0.0;
@@ -383,13 +384,13 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
     if (best + NodePolynomial::k_overshoot * spread + error <= record + slack) continue;
     if (!NodePolynomial::may_exceed(record + slack, error, level, v, sign, best)) continue;
     if (error > slack) return false;
-    // Beyond the bound for poles only the magnitude matters, which the nodes have shown. Between them a polynomial through reciprocals of
-    // rounding errors may have any sign.
+    // Beyond k_at_pole only the magnitude matters, which the nodes show. Between them a polynomial through reciprocals of rounding errors
+    // may have any sign.
     if (ranges_[c].channel->unit.empty() && std::abs(best) > k_at_pole) continue;
-    const double bit = k_bit_of_slack * slack; // the maximum is searched in all gaps between nodes
+    const double bit = k_bit_of_slack * slack; // accuracy of the maximum of the polynomial
     const auto top = through_nodes(node_, c, level, sign).top_above(record + slack - bit - error, bit);
     if (!top || !(top->value + bit + error > record + slack)) continue;
-    // The error of the first level is that of a single guess, which may cross the curve by chance.
+    // At the first level the error estimate is the deviation at a single point, which may be small by chance.
     if (level == 1 || k_safety * error > slack) {
       unchecked_.push_back({c, top->theta, sign * top->value});
       continue;
@@ -400,9 +401,9 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
   return true;
 }
 
-// Evaluates the maxima that settle() left unchecked. Channels whose polynomial is wrong there are searched further. Each check is one
-// evaluation. If there are many, all these channels get the next level of nodes instead, which they share, and the maxima found there are
-// accepted without a check.
+// Evaluates the maxima that settle() put into unchecked_, one evaluation for each; channels whose polynomial deviates there remain open. If
+// there are many, evaluations are saved: after the first level all these channels get the nodes of the next level, which they share, and at
+// higher levels the maxima are accepted without evaluation.
 void ExtremeFinder::check_tops(int level, Integrator& integrator, Dynamics& dynamics) {
   const bool are_many = unchecked_.size() > k_few;
   for (const Top& top : unchecked_) {
@@ -430,18 +431,17 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
     const double theta = NodePolynomial::theta(i);
     const Snapshot snapshot = evaluate_dense(theta, integrator, dynamics);
     const NodePolynomial::Weights* const weights = level > 1 ? &NodePolynomial::weights_at(level - 1, theta) : nullptr;
-    // The value in the middle can reveal an extreme that the ends did not indicate. This is checked for all channels, since everything has
-    // been evaluated there anyway. Not for fixed steps: near the end of a slip their accuracy of its direction is too low.
+    // The value in the middle may reveal an extreme that the ends did not indicate. All channels are checked, because everything has been
+    // evaluated there. Fixed steps are excluded: near the end of a slip their accuracy of its direction is too low.
     if (level == 1 && integrator.is_adaptive()) {
       for (const std::size_t c : tracked_) {
         ChannelSearchState& curve = curve_[c];
         if (curve.is_open || rate_of_[c] >= 0 || formulas_->is_formula(c))
-          continue; // the rates at the ends already show extremes of positions
-                    // and velocities
+          continue; // turns_inside() already covers positions and velocities
         const ChannelRange& r = ranges_[c];
         const double a = at(c, 0), b = at(c, k_last), reach = k_within_reach * (r.high.value - r.low.value);
         if (std::max(a, b) + reach < r.high.value && std::min(a, b) - reach > r.low.value) continue;
-        if (a == b && a == before_[c]) continue; // at rest
+        if (a == b && a == before_[c]) continue; // channel at rest
         const double slack = tolerance(c);
         const auto may_be_beyond = [&](double above, double below, double bend) {
           const double gain = k_surprise * bend / 8.0;
@@ -466,7 +466,8 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
       take(c, t_ + theta * (t1_ - t_), snapshot, node_[i].data());
       double guess = k_unknown;
       if (level > 1) guess = interpolated(node_, c, level - 1, *weights);
-      else if (h_last_ > 0.0) { // the parabola through the ends of this stretch and the start of the previous one
+      // Deviation of the middle from the parabola through the ends of this stretch and the start of the previous one.
+      else if (h_last_ > 0.0) {
         const double h = t1_ - t_, a = at(c, 0), b = at(c, k_last);
         const double bend = ((b - a) - (a - before_[c]) * (h / h_last_)) / (1.0 + h_last_ / h);
         guess = 0.5 * (a + b) - 0.25 * bend;
@@ -478,7 +479,7 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
 }
 
 void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
-  // Evaluates, at an end of the stretch, the channels that their bounds had excluded there.
+  // Evaluates, at an end of the stretch, the channels that were not evaluated there because of their bounds.
   const auto stored_sample = [&](int node) {
     const auto is_missing = [&](std::size_t c) { return screened_slot_[c] >= 0 && std::isnan(node_[node][c]); };
     if (std::none_of(open_.begin(), open_.end(), is_missing)) return;
@@ -492,7 +493,7 @@ void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
     refine(level, integrator, dynamics);
     if (level == 1)
       for (const int node : {0, k_last}) stored_sample(node);
-    if (wanted > 1 << level) continue; // oscillating loads between the nodes would be missed
+    if (wanted > 1 << level) continue; // the nodes of this level are too few for oscillating loads
     std::erase_if(open_, [&](std::size_t c) { return settle(c, level); });
     check_tops(level, integrator, dynamics);
   }
@@ -500,19 +501,19 @@ void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
   for (const std::size_t c : open_) section(c, integrator, dynamics);
 }
 
-// Returns the larger difference between the values at the outermost node and its neighbours.
+// Returns the larger difference between the value at node `middle` and those at its neighbours.
 double ExtremeFinder::spread_about(std::size_t c, int middle) const {
   return std::max(std::abs(at(c, middle + 1) - at(c, middle)), std::abs(at(c, middle) - at(c, middle - 1)));
 }
 
-// Excludes channels that contain rounding noise. In a large scene the changes of accelerations in a short stretch are rounding errors of
-// positions far from the origin. No polynomial approximates them, and separate searches for all channels would cost the square of the
-// scene. A channel is noise if it changes within a tiny time shift as much as between its nodes; this is tested by a few common
-// evaluations. Its extremes are then known only to that accuracy.
+// Closes the search for channels that contain rounding noise. In a large scene the changes of accelerations in a short stretch are rounding
+// errors of positions far from the origin. No polynomial approximates them, and separate searches for all channels would cost the square of
+// the scene. A channel is noise if a tiny time shift changes it as much as it changes between its nodes; a few evaluations common to all
+// channels test this. Its extremes are then known only to that accuracy.
 void ExtremeFinder::drop_jittery(Integrator& integrator, Dynamics& dynamics) {
   if (open_.size() <= k_few) return;
   constexpr std::size_t k_places = k_last / 2;
-  std::vector<std::array<double, k_places>> changes(open_.size()); // largest change at each place
+  std::vector<std::array<double, k_places>> changes(open_.size()); // per channel: largest change at each place
   for (int probe = 0; probe < k_most_probes && open_.size() > k_few; ++probe) {
     for (std::size_t place = 0; place < k_places; ++place) {
       const int node = 2 * static_cast<int>(place) + 1;
@@ -528,7 +529,7 @@ void ExtremeFinder::drop_jittery(Integrator& integrator, Dynamics& dynamics) {
     for (std::size_t k = 0; k < open_.size(); ++k) {
       std::array<double, k_places> sorted = changes[k];
       std::sort(sorted.begin(), sorted.end());
-      if (is_jitter(open_[k], sorted[k_places - 2])) continue; // at two places, as a single one may be a jump
+      if (is_jitter(open_[k], sorted[k_places - 2])) continue; // the second largest, because a single place may be at a jump
       changes[left] = changes[k];
       open_[left++] = open_[k];
     }
@@ -536,7 +537,7 @@ void ExtremeFinder::drop_jittery(Integrator& integrator, Dynamics& dynamics) {
   }
 }
 
-// Returns true if a change over a tiny time shift is as large as the differences between nodes, and stores it.
+// Returns true if `change`, over a tiny time shift, is comparable to the differences between nodes, and stores it in jitter_.
 bool ExtremeFinder::is_jitter(std::size_t c, double change) {
   double spread = 0.0;
   for (int i = 1; i < k_last; ++i) spread = std::max(spread, spread_about(c, i));
@@ -546,12 +547,12 @@ bool ExtremeFinder::is_jitter(std::size_t c, double change) {
   return true;
 }
 
-// Finds by bisection the first time at which a channel without unit exceeds 1.
+// Finds by bisection the first time at which a channel without unit exceeds 1 (ChannelRange::first_above_one).
 void ExtremeFinder::find_crossings(Integrator& integrator, Dynamics& dynamics) {
   for (const std::size_t c : dimensionless_) {
     ChannelRange& r = ranges_[c];
     if (r.first_above_one || !(r.high.value > 1.0)) continue;
-    if (r.high.t <= t_) { // reached before the present stretch
+    if (r.high.t <= t_) { // the largest value was reached before the present stretch
       r.first_above_one = r.high.t;
       continue;
     }
@@ -566,7 +567,7 @@ void ExtremeFinder::find_crossings(Integrator& integrator, Dynamics& dynamics) {
   }
 }
 
-// The error of the linear extrapolation from two stretches to a third one shows how well the curves are resolved.
+// Adapts the number of fixed steps in a stretch, from the error of linear extrapolation over two stretches.
 void ExtremeFinder::adapt_length() {
   if (steps_ == 0) return;
   const double h = t1_ - t_;

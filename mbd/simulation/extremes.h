@@ -3,18 +3,18 @@
 // A run is divided into stretches in which everything is smooth. A stretch is one accepted step (for fixed steps several, as long as the
 // curves are well resolved), up to an event or breakpoint, both sides of which are evaluated. All channels are evaluated at the ends of a
 // stretch. If the second difference over three ends (for coordinates and velocities of bodies also the slopes at both ends) indicates a
-// possible extreme inside, the channels concerned are evaluated on the dense output: in the middle, then at 5 and 9 Chebyshev–Lobatto
-// points, until the interpolating polynomial predicts the next points to `k_resolution` of the channel's range. The extreme is that of the
-// polynomial. If this fails (a kink), golden sections around the outermost point follow, for each channel separately. If there are many
-// such channels, those that contain only rounding noise are first identified together and excluded.
+// possible extreme inside, the channel is evaluated on the dense output: in the middle, then at 5 and 9 Chebyshev–Lobatto points, until the
+// interpolating polynomial predicts the next points to `k_resolution` of the channel's range. The extreme is that of the polynomial. If
+// this fails (a kink), golden sections around the outermost point follow, for each channel separately. If there are many such channels,
+// those that contain only rounding noise are first identified together and excluded.
 //
 // Channels that are formulas of others can have kinks and peaks anywhere; they are bounded instead (formula_extremes.h).
 //
-// When a slip velocity is below the accuracy of rates, its direction is unknown, and so are its wrench and all that depends on it. Values
-// at such times are included, and the amount by which they exceed all other values is reported (ChannelRange::unsure_low).
+// When a slip velocity is below the accuracy of rates, its direction is unknown, and so are its wrench and all values that depend on the
+// wrench. Values at such times are included, and the amount by which they exceed all other values is reported (ChannelRange::unsure_low).
 //
-// The evaluated points depend on the steps only, not on the samples written. Limits: a peak that rises and falls within one step without
-// any sign at its ends or in the curve before is not found; the integrator's error control does not detect it either. For methods that
+// The evaluated points depend on the steps only, not on the samples written. Limits: a peak that rises and falls within one step without a
+// trace at its ends or in the curve before is not found; the integrator's error control does not detect it either. For methods that
 // determine contact modes themselves (moreau, storms) only the ends of steps are used, and for formulas the straight lines between them.
 #pragma once
 
@@ -38,23 +38,25 @@ struct Extreme {
 /// Results for one channel.
 struct ChannelRange {
   const Channel* channel = nullptr; ///< a channel of the system, which must outlive this object
-  Extreme low, high;                ///< NaN if the channel had no value or has no extremes (Channel::has_extremes)
+  Extreme low, high;                ///< minimum and maximum; NaN if the channel had no value or has no extremes (Channel::has_extremes)
   double first = 0.0;               ///< value at the start
   double final = 0.0;               ///< value at the end
-  double final_rate = std::numeric_limits<double>::quiet_NaN(); ///< derivative at the end, per s; NaN: unknown
-  /// Accuracy to which the extremes are located; smaller ones were not searched for. Infinite: they may be arbitrarily larger.
+  double final_rate = std::numeric_limits<double>::quiet_NaN(); ///< time derivative at the end, in the unit per s; NaN: unknown
+  /// Accuracy to which the extremes are located; excesses smaller than this were not searched for. Infinite: the true extremes may be
+  /// arbitrarily larger.
   double resolution = 0.0;
-  /// Amount by which low and high exceed the values met while the direction of each slip was known; NaN: there were none.
+  /// Amount by which low and high exceed the values at times when the direction of every slip was known; NaN if there were no such times.
   double unsure_low = 0.0, unsure_high = 0.0;
-  bool had_no_value = false;                              ///< the value was NaN at some time
-  bool is_low_singular = false, is_high_singular = false; ///< reached near a singular position of joints, where reactions may diverge
-  std::optional<double> first_above_one;                  ///< time, s, at which a channel without unit first exceeded 1
+  bool had_no_value = false; ///< the value was NaN at some time
+  /// The extreme was reached near a singular position of joints, where reactions may diverge.
+  bool is_low_singular = false, is_high_singular = false;
+  std::optional<double> first_above_one; ///< time, s, at which a channel without unit first exceeded 1
 
   /// Returns low or high, whichever has the larger absolute value.
   [[nodiscard]] const Extreme& largest() const;
 };
 
-/// Relative to the largest value of channels with the same unit: a smaller range shows only rounding.
+/// A range below this fraction of the largest value of channels with the same unit is only rounding.
 inline constexpr double k_rounded_range = 1e-12;
 
 /// Computes the ranges of all channels during one run. Used by Simulation.
@@ -63,50 +65,51 @@ public:
   /// `max_dimension`: upper limit of the dimension of the packed state. Keeps a reference to the system.
   ExtremeFinder(const System& system, int max_dimension);
 
-  /// Restarts at a state: the start of the run, or after an event. `snapshot` belongs to this state.
+  /// Restarts at a state: the start of the run, or after an event. `snapshot`: evaluation at this state.
   void begin(double t, const Snapshot& snapshot);
-  /// As above, for a method that locates events. Precondition: the last evaluation of `dynamics` was at this state.
+  /// As begin() above, for a method that locates events. Precondition: the last evaluation of `dynamics` was at this state.
   void begin(double t, const Snapshot& snapshot, const Integrator& integrator, Dynamics& dynamics);
-  /// To be called after each step. `is_at_end`: the last evaluation of `dynamics` was at its end. `is_last`: the step ends the stretch.
+  /// To be called after each step. `is_at_end`: the last evaluation of `dynamics` was at the end of the step. `is_last`: the step ends the
+  /// stretch.
   void add_step(Integrator& integrator, Dynamics& dynamics, bool is_at_end, bool is_last);
-  /// Ends the stretch at time t within the last step.
+  /// Ends the stretch at time t, s, within the last step.
   void end_at(double t, Integrator& integrator, Dynamics& dynamics);
   /// To be called at the end of the run.
   void finish(const Snapshot& snapshot);
-  /// Computes the rates at the end from the state `before` seconds earlier on the same motion. Precondition: finish().
+  /// Computes ChannelRange::final_rate from the state `before` seconds earlier on the same motion. Precondition: finish().
   void finish_rates(const Snapshot& snapshot, double before);
 
   /// Returns the ranges in the order of the system's channels; complete after finish().
   [[nodiscard]] const std::vector<ChannelRange>& ranges() const { return ranges_; }
 
-  /// Returns how far contacts pressed beyond the ends of their parts.
+  /// Returns by how much contacts pressed beyond the ends of their parts (face_travel.h).
   [[nodiscard]] std::vector<FaceTravel> face_travels() const { return faces_.travels(); }
 
-  static constexpr double k_resolution = 1e-6; ///< relative to the range of the channel
+  static constexpr double k_resolution = 1e-6; ///< accuracy of extremes, relative to the range of the channel
   static constexpr double k_at_pole = 1e9;     ///< a channel without unit beyond this value counts as a pole
 
 private:
   static constexpr int k_nodes = 9;       ///< largest number of nodes inside a stretch
   static constexpr int k_longest = 16;    ///< largest number of fixed steps in a stretch
-  static constexpr double k_noise = 1e-9; ///< relative to the largest range of channels with the same unit
+  static constexpr double k_noise = 1e-9; ///< accuracy of extremes, relative to the largest range of channels with the same unit
   class Site;
-  /// Smallest pivot of the constraints, the square of a distance in rad²: a state nearer than 0.01 mrad to a singular position is at it.
+  /// States with a smaller pivot of the constraints, the square of a distance in rad², count as singular: nearer than 0.01 mrad.
   static constexpr double k_singular_pivot = 1e-10;
   /// Progress of the search for one channel in the present stretch.
   struct ChannelSearchState {
-    bool is_open = false; ///< an extreme may remain to be found
-    double error = 0.0;   ///< error of the polynomial through the nodes
+    bool is_open = false; ///< the search for an extreme is not finished
+    double error = 0.0;   ///< error of the polynomial through the nodes, in the unit of the channel
   };
-  struct Kind { ///< channels with the same unit
+  struct Kind { ///< data common to channels with the same unit
     double range = 0.0, largest = 0.0;
-    double scale = 0.0; ///< expected magnitude, used as long as nothing moves
+    double scale = 0.0; ///< expected magnitude, used while everything is at rest
   };
 
   struct Top { ///< maximum of the polynomial through the nodes of a channel
     std::size_t channel = 0;
     double theta = 0.0, value = 0.0;
   };
-  struct KnownDirectionRange { ///< range while the direction of each slip was known
+  struct KnownDirectionRange { ///< range of values at times when the direction of every slip was known
     double low = std::numeric_limits<double>::quiet_NaN(), high = low;
   };
 
@@ -142,38 +145,38 @@ private:
   [[nodiscard]] bool is_ruled_out(std::size_t c) const { return screened_slot_[c] >= 0 && !is_wanted_[screened_slot_[c]]; }
 
   const System& system_;
-  std::size_t count_; ///< of channels
+  std::size_t count_; ///< number of channels
   std::vector<ChannelRange> ranges_;
   std::vector<Kind> kinds_;
-  std::vector<int> kind_;            ///< index in kinds_ of each channel
+  std::vector<int> kind_;            ///< per channel: index in kinds_
   std::vector<int> screened_slot_;   ///< per channel: index in bounds_ if it has cheap bounds, otherwise −1
   std::vector<int> rate_of_;         ///< per channel: index of the channel that is its rate; −1: none
-  std::vector<std::size_t> tracked_; ///< channels that have extremes
+  std::vector<std::size_t> tracked_; ///< indices of channels that have extremes
   std::vector<std::size_t> dimensionless_;
 
-  double t_ = 0.0, t_last_ = 0.0, h_last_ = 0.0; ///< start of the stretch; start and length (0: none) of the previous one
-  double t1_ = 0.0;                              ///< end of the stretch
-  std::vector<double> before_;                   ///< values at the start of the previous stretch
-  std::vector<std::vector<double>> node_;        ///< values at the nodes; 0 and 8 are the ends
+  double t_ = 0.0, t_last_ = 0.0, h_last_ = 0.0; ///< start of the stretch; start and length of the previous one, s; length 0: none
+  double t1_ = 0.0;                              ///< end of the stretch, s
+  std::vector<double> before_;                   ///< per channel: value at the start of the previous stretch
+  std::vector<std::vector<double>> node_;        ///< per node, per channel: value; nodes 0 and 8 are the ends
   std::vector<ChannelSearchState> curve_;
-  std::vector<double> curvature_; ///< recent second derivative, per s²
+  std::vector<double> curvature_; ///< per channel: recent second derivative, per s²
   std::vector<std::size_t> open_; ///< channels still searched in this stretch
   std::vector<Top> unchecked_;    ///< maxima whose error may exceed the tolerance
-  std::vector<double> jitter_;    ///< per channel: change found to be rounding noise; empty until first needed
+  std::vector<double> jitter_;    ///< per channel: amplitude of rounding noise; empty until first needed
   std::vector<ValueBounds> bounds_, bounds_before_;
-  std::vector<char> is_wanted_; ///< per channel with bounds: it may exceed its extremes at the last end
+  std::vector<char> is_wanted_; ///< per channel with bounds: the channel may exceed its extremes at the last end
 
-  int steps_ = 0, longest_ = 1;                  ///< number of steps in the stretch, and its limit
-  std::vector<double> step_t_, step_y_, step_k_; ///< starts of these steps
+  int steps_ = 0, longest_ = 1;                  ///< number of steps in the stretch, and the largest number allowed
+  std::vector<double> step_t_, step_y_, step_k_; ///< time, state and rates at the starts of these steps
   std::size_t stride_;
   std::vector<double> y_, dy_, scratch_;
   bool is_begun_ = false;
   double slip_ = std::numeric_limits<double>::infinity(); ///< speed of the slowest slip whose direction may change, at the last end, m/s
-  bool is_unsure_ = false;                                ///< this speed is below its accuracy
-  std::vector<KnownDirectionRange> known_direction_;      ///< per channel; empty until the first unsure slip
+  bool is_unsure_ = false;                                ///< slip_ is below the accuracy of velocities
+  std::vector<KnownDirectionRange> known_direction_;      ///< per channel; empty until the first slip of unknown direction
   bool is_singular_ = false;                              ///< the last evaluated state is near a singular position of joints
   FaceWatch faces_;
-  std::unique_ptr<FormulaExtremes> formulas_; ///< search for channels that are formulas
+  std::unique_ptr<FormulaExtremes> formulas_; ///< search for extremes of formulas
 };
 
 } // namespace steplap

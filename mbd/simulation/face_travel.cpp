@@ -37,7 +37,8 @@ void FaceWatch::arrive(const Snapshot& snapshot) {
     before_[i] = last;
     if (last.is_pressed) note(i, last.place.along, snapshot.t);
     if (!first.is_pressed || !last.is_pressed) continue;
-    // The cubic through places and rates, s(θ) with θ = 0 … 1, turns where s′ = s0 + 2 b θ + 3 a θ² = 0.
+    // Travel along a face within a step, as cubic s(θ), θ = 0 … 1, through positions and rates at the ends. Its extremes are where s′ = s0
+    // + 2 b θ + 3 a θ² = 0.
     const double s0 = h * first.place.rate, s1 = h * last.place.rate, rise = last.place.along - first.place.along;
     const double a = s0 + s1 - 2.0 * rise, b = 3.0 * rise - 2.0 * s0 - s1, square = b * b - 3.0 * a * s0;
     if (!(square >= 0.0)) continue;

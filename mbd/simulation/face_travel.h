@@ -1,4 +1,4 @@
-// How far contacts on endless faces (endless_face.h) have pressed beyond the ends of their parts during a run.
+// Distances by which contacts on endless faces (endless_face.h) have pressed beyond the ends of their parts during a run.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -7,14 +7,14 @@
 
 namespace steplap {
 
-/// The farthest that a contact has pressed beyond the end of its part.
+/// Largest distance by which a contact has pressed beyond the end of its part.
 struct FaceTravel {
-  EndlessFace face;    ///< its contact and bodies are those of the leg in which it happened
-  double beyond = 0.0; ///< m, above 0
-  double t = 0.0;      ///< s
+  EndlessFace face;    ///< face; its contact and bodies are indices of the leg in which this happened
+  double beyond = 0.0; ///< distance beyond the end, m, above 0
+  double t = 0.0;      ///< time, s
 };
 
-/// Finds the travels of one leg of a run, from the motion at the ends of steps and the cubic between them.
+/// Finds the travels of one leg of a run from the motion at the ends of steps, interpolated by cubics.
 class FaceWatch {
 public:
   /// Keeps a reference to the system.
@@ -22,14 +22,14 @@ public:
 
   /// Starts a smooth stretch of motion.
   void begin(const Snapshot& snapshot);
-  /// Ends a stretch, and starts the next.
+  /// Ends a stretch at `snapshot`, where the next one starts.
   void arrive(const Snapshot& snapshot);
 
-  /// Returns the travels of faces that were left.
+  /// Returns the travels of the faces that contacts have left.
   [[nodiscard]] std::vector<FaceTravel> travels() const;
 
 private:
-  struct End { ///< one end of a stretch
+  struct End { ///< motion at one end of a stretch
     bool is_pressed = false;
     FacePlace place;
   };
@@ -40,7 +40,7 @@ private:
   void note(std::size_t face, double along, double t);
 
   const std::vector<EndlessFace>& faces_;
-  std::vector<Farthest> farthest_; ///< of each face
+  std::vector<Farthest> farthest_; ///< per face
   std::vector<End> before_;
   double t_ = 0.0; ///< start of the stretch, s
 };

@@ -10,22 +10,24 @@ namespace steplap {
 namespace {
 
 constexpr double k_surprise = 3.0, k_remembered = 0.5; // factors for recent curvatures, as in extremes.cpp
-constexpr long k_most_spans = 20000;                   // for one extreme in one stretch: 0.01 s of computing
+constexpr long k_most_spans = 20000;                   // largest number of intervals for one extreme in one stretch: 0.01 s of computing
 constexpr long k_few_spans = 500;
-constexpr long k_run_spans = 4000000; // afterwards only few are allowed for each extreme
+constexpr long k_run_spans = 4000000; // number of intervals of a run after which only few are allowed for each extreme
 constexpr int k_most_panels = 96;     // largest number of panels in one stretch
 constexpr int k_few_panels = 8;
 constexpr int k_run_panels = 20000;
 constexpr int k_deepest_panel = 40;
-constexpr int k_deepest_missing = 24; // bisections: a formula that has no value for less than 1e-7 of a stretch is not reported
+// Largest number of bisections: a formula without value for less than 1e-7 of a stretch is not reported.
+constexpr int k_deepest_missing = 24;
 constexpr long k_missing_spans = 2000;
-constexpr double k_shortest = 0x1p-51;    // shortest interval, relative to the stretch or to t: its ends are equal up to rounding
+constexpr double k_shortest = 0x1p-51;    // shortest interval, relative to the stretch or to t; its ends are equal up to rounding
 constexpr double k_same_crossing = 1e-10; // largest distance of two crossings that count as one, relative to the stretch
 
 constexpr double k_golden = 0.3819660112501051;
 constexpr int k_golden_steps = 60; // steps of golden-section search, enough to reach rounding
 
-// Fraction of the remaining gap: if the uncertainty of the enclosure itself is larger, bisection does not reduce the gap.
+// An interval whose bound exceeds the value mainly by the error of the operands, more than this fraction of the gap, is not bisected
+// further, because that does not reduce the gap.
 constexpr double k_own = 0.5;
 
 std::vector<FormulaChannel::Leaf> leaves_of(const System& system) {
@@ -99,7 +101,7 @@ double FormulaExtremes::unclosed(std::size_t channel, const ChannelRange& found)
   return 0.0;
 }
 
-// Computes the second derivatives of all operands from three ends.
+// Computes the second derivatives of all operands by divided differences over the last three ends.
 void FormulaExtremes::bend(double h) {
   for (std::size_t i = 0; i < curvature_.size(); ++i) {
     const double slope = last_[i] - first_[i], last = (first_[i] - before_[i]) * (h / h_last_);
@@ -109,8 +111,8 @@ void FormulaExtremes::bend(double h) {
   }
 }
 
-// Computes a generous bound of the deviation of each operand from the straight line between its ends: from curvature, from the rates at the
-// ends, and half of its change.
+// Computes a safe bound of the deviation of each operand from the straight line between its ends: the sum of contributions by curvature, by
+// the rates at the ends, and half of its change.
 void FormulaExtremes::reach(double h, std::vector<double>& error) const {
   for (std::size_t i = 0; i < error.size(); ++i)
     error[i] = 0.25 * k_surprise * curvature_[i] * h * h + 0.25 * h * (std::abs(first_rate_[i]) + std::abs(last_rate_[i])) +
@@ -184,7 +186,7 @@ const Enclosure<0>& FormulaExtremes::enclose_at(const FormulaTarget& sought, int
                                        Enclosure<0>::of_polynomial({t}, 4.0 * 0x1p-52 * std::abs(t)), node_at_.data());
 }
 
-// Returns the value of the motion itself; for time steps that of the straight lines between their ends.
+// Returns the value of the formula on the motion itself. In time stepping the motion is the straight line between the ends of a step.
 double FormulaExtremes::real_value(const FormulaTarget& sought, double theta, ExtremeSite& site) {
   double value = 0.0;
   if (is_straight_) {
@@ -204,7 +206,7 @@ double FormulaExtremes::real_value(const FormulaTarget& sought, double theta, Ex
 
 long FormulaExtremes::spans_left() const { return run_spans_ < k_run_spans ? k_most_spans : k_few_spans; }
 
-// Order of intervals with equal bounds: the deeper one first, so that one of many equal peaks is found soon.
+// Order of intervals in the heap. With equal bounds the more deeply divided one comes first, so that one of many equal peaks is found soon.
 constexpr auto k_further_in = [](const auto& a, const auto& b) { return a.bound < b.bound || (a.bound == b.bound && a.depth < b.depth); };
 
 void FormulaExtremes::push(const FormulaTarget& sought, double sign, Span span) {
@@ -227,7 +229,7 @@ bool FormulaExtremes::is_shortest(const Span& span) const {
   return span.end - span.begin <= k_shortest * std::max(1.0, std::abs(t_ + h_) / h_);
 }
 
-// Adds both halves of an interval; if its panel has been halved, its parts in each half.
+// Adds both halves of an interval. If its panel has been halved meanwhile, adds its parts in each half of the panel.
 void FormulaExtremes::push_parts(const FormulaTarget& sought, double sign, const Span& span) {
   const int half = curves_.panel(span.panel).half;
   const double middle = half >= 0 ? curves_.panel(half).end : 0.5 * (span.begin + span.end);
@@ -236,15 +238,15 @@ void FormulaExtremes::push_parts(const FormulaTarget& sought, double sign, const
   if (span.end > middle) push(sought, sign, {span.bound, 0.0, second, depth, std::max(span.begin, middle), span.end});
 }
 
-// Returns the increase of the tolerance by a new extreme: 1e-6 of the change of the channel's range, or of its magnitude if it has no unit
-// (extremes.cpp).
+// Returns the increase of the tolerance if the extreme rises from `record` to `promised`: 1e-6 of the change of the channel's range, or of
+// its magnitude if it has no unit (extreme_scales.cpp).
 double FormulaExtremes::gained(const FormulaTarget& sought, double promised, double record) {
   const double gain = promised - record;
   if (!std::isfinite(gain)) return 0.0;
   return ExtremeFinder::k_resolution * (sought.is_number ? std::min(gain, std::max(1.0, std::abs(record))) : gain);
 }
 
-// Halves the panel. Returns true if this improves the bounds of the operands.
+// Halves the panel. Returns true if its bounds of the operands are improved by this.
 bool FormulaExtremes::improve(const FormulaTarget& sought, int panel, ExtremeSite& site) {
   if (is_straight_ || curves_.panel(panel).depth >= k_deepest_panel) return false;
   if (curves_.panels() >= (run_panels_ < k_run_panels ? k_most_panels : k_few_panels)) return false;
@@ -272,7 +274,8 @@ void FormulaExtremes::seek(FormulaTarget& sought, double sign, ExtremeSite& site
   const double unbounded = std::numeric_limits<double>::infinity();
   for (long left = spans_left(); !spans_.empty() && spans_.front().bound > wanted() && left > 0; --left) {
     const Span span = pop();
-    if (span.bound == unbounded && (sign > 0.0 ? sought.high_bound : -sought.low_bound) == unbounded) continue; // already recorded
+    // Formula without bound here; already recorded.
+    if (span.bound == unbounded && (sign > 0.0 ? sought.high_bound : -sought.low_bound) == unbounded) continue;
     if (curves_.panel(span.panel).half >= 0) {
       push_parts(sought, sign, span);
       continue;
@@ -295,8 +298,8 @@ void FormulaExtremes::seek(FormulaTarget& sought, double sign, ExtremeSite& site
   if (at >= 0.0) check(sought, sign, top_about(sought, sign, at, width), promised, site);
 }
 
-// Locates the maximum of the curves about a place by golden sections. Within the resolution of the value its time is much less accurate,
-// and this improves it.
+// Returns the position of the maximum of the curves near theta, by golden sections. A maximum is flat, so its position would otherwise be
+// much less accurate than its value.
 double FormulaExtremes::top_about(const FormulaTarget& sought, double sign, double theta, double width) {
   const auto value = [&](double x) {
     const Interval range = enclose_at(sought, panel_at(x), x).range;
@@ -324,15 +327,15 @@ int FormulaExtremes::panel_at(double theta) const {
   return panel;
 }
 
-// Evaluates the motion itself at the maximum. If its value is lower than predicted, the curves are inaccurate, and the error is added to
-// the bounds.
+// Evaluates the formula on the motion itself at the maximum `theta`. If the value is lower than `promised`, the curves are inaccurate, and
+// the difference is added to the bounds.
 void FormulaExtremes::check(FormulaTarget& sought, double sign, double theta, double promised, ExtremeSite& site) {
   const double value = sign * real_value(sought, theta, site);
   if (value >= promised - std::max(site.tolerance(sought.channel), 0.0)) return;
   keep_bound(sought, sign, std::isfinite(value) ? 2.0 * promised - value : std::numeric_limits<double>::infinity());
 }
 
-// Searches for a time at which the formula has no value, if this is possible.
+// Searches for a time at which the formula has no value (NaN), if its enclosure contains such a time.
 void FormulaExtremes::seek_missing(const FormulaTarget& sought, ExtremeSite& site) {
   spans_.clear();
   spans_.push_back({0.0, 0.0, 0, 0, 0.0, 1.0});
@@ -354,7 +357,7 @@ void FormulaExtremes::seek_missing(const FormulaTarget& sought, ExtremeSite& sit
   }
 }
 
-// Finds the first time at which a channel without unit exceeds 1, from the left.
+// Finds the first time at which a channel without unit exceeds 1, by bisection of intervals from the left.
 void FormulaExtremes::seek_first(const FormulaTarget& sought, ExtremeSite& site) {
   ChannelRange& range = site.range(sought.channel);
   if (range.first_above_one || !(range.high.value > 1.0)) return;

@@ -1,13 +1,12 @@
 // Extremes of channels that are formulas of others (mbd/formula/).
 //
 // A formula can have kinks anywhere and arbitrarily narrow peaks that no samples show; it is therefore bounded. Its operands are
-// polynomials with an error over each stretch (operand_curves.h). The formula's tree gives an enclosure over any time interval
+// polynomials with an error bound over each stretch (operand_curves.h). The formula's tree gives an enclosure over any time interval
 // (mbd/formula/enclosure.h). The interval with the largest upper bound is bisected until no bound exceeds the best value found by more than
-// the tolerance (R. E. Moore, Interval Analysis, 1966; E. Hansen, Numer. Math. 34 (1980) 247). The value found is one of the motion itself,
-// evaluated where the enclosure is sharp.
+// the tolerance (R. E. Moore, Interval Analysis, 1966; E. Hansen, Numer. Math. 34 (1980) 247). Values are evaluated on the motion itself.
 //
-// Work is limited: numbers of intervals and evaluations, per stretch and per run. If the search cannot be completed within these limits (a
-// pole, a tie of infinitely many peaks, an operand with a kink), the remaining bound is kept: the extreme lies between it and the value
+// The work is limited: numbers of intervals and evaluations, per stretch and per run. If the search cannot be completed within these limits
+// (a pole, a tie of infinitely many peaks, an operand with a kink), the remaining bound is kept: the extreme lies between it and the value
 // found.
 #pragma once
 
@@ -21,15 +20,15 @@ namespace steplap {
 
 struct ChannelRange;
 
-/// Access to the run for the search in one stretch.
+/// Access of a search to the stretch of the run in which it works.
 class ExtremeSite {
 public:
   virtual ~ExtremeSite() = default;
   /// Returns the range in which the channel's extremes are stored.
   [[nodiscard]] virtual ChannelRange& range(std::size_t channel) = 0;
-  /// Returns the required accuracy of an extreme of the channel.
+  /// Returns the required accuracy of an extreme, in the unit of the channel.
   [[nodiscard]] virtual double tolerance(std::size_t channel) const = 0;
-  /// Returns the motion at theta of the stretch.
+  /// Returns the motion at theta of the stretch, 0 … 1.
   [[nodiscard]] virtual Snapshot evaluate_dense(double theta) = 0;
   /// Stores a value of the channel found at theta.
   virtual void note(std::size_t channel, double value, double theta) = 0;
@@ -48,15 +47,16 @@ public:
 
   /// To be called at the first state of a stretch, after a jump of the motion.
   void begin(const Snapshot& snapshot);
-  /// To be called at the end of a stretch.
+  /// To be called at the end of a stretch, before search().
   void arrive(const Snapshot& snapshot);
-  /// Searches the stretch of length h from t. Precondition: begin() or pass() at its start, arrive() at its end.
+  /// Searches the stretch of length h, s, from t, s. Precondition: begin() or pass() at its start, arrive() at its end.
   void search(double t, double h, ExtremeSite& site);
   /// As search(), with linear interpolation between the ends, as between the ends of time steps.
   void search_linear_step(double t, double h, ExtremeSite& site);
-  /// Makes the end of this stretch, of length h, the start of the next one.
+  /// Makes the end of this stretch, of length h in s, the start of the next one.
   void pass(double h);
-  /// Returns by how much the minimum and maximum of a channel may lie beyond those found; 0 for channels that are not formulas.
+  /// Returns the largest amount by which minimum and maximum of a channel may exceed those in `found`; 0 for channels that are not
+  /// formulas.
   [[nodiscard]] double unclosed(std::size_t channel, const ChannelRange& found) const;
 
 private:
@@ -65,12 +65,12 @@ private:
     const FormulaChannel* formula = nullptr;
     std::vector<std::size_t> leaves; ///< indices of the formula's operands
     bool is_number = false;          ///< the channel has no unit
-    /// Limits up to which the extremes may exceed the values found, where bounds could not be closed.
+    /// Bounds of the extremes where the search was not completed.
     double low_bound = std::numeric_limits<double>::infinity(), high_bound = -std::numeric_limits<double>::infinity();
   };
   struct Span {
-    double bound = 0.0;  ///< upper bound of sign · value
-    double likely = 0.0; ///< expected position of the maximum, from −1 (start) to 1
+    double bound = 0.0;  ///< upper bound of sign · value in the interval
+    double likely = 0.0; ///< expected position of the maximum, from −1 (start) to 1 (end)
     int panel = 0, depth = 0;
     double begin = 0.0, end = 0.0;
   };
@@ -108,7 +108,7 @@ private:
   double t_ = 0.0, h_ = 0.0, h_last_ = 0.0;
   bool is_straight_ = false, has_evaluated_ = false;
   std::vector<double> first_, last_, before_, first_rate_, last_rate_, curvature_, error_;
-  std::vector<Span> spans_; ///< heap
+  std::vector<Span> spans_; ///< heap of intervals, the largest bound on top
   std::vector<Whole> leaf_, node_;
   std::vector<Enclosure<0>> leaf_at_, node_at_;
   long run_spans_ = 0; ///< number of intervals evaluated in the run so far

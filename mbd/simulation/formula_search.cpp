@@ -7,20 +7,21 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_shortest = 1e-9; // relative to the step: shorter spans are not halved
-// Relative to the step: near its ends a condition changes at an event that is located there, so undecided spans are ignored.
+constexpr double k_shortest = 1e-9; // spans shorter than this fraction of the step are not halved
+// Within this fraction of the step from its ends undecided spans are ignored: conditions change there at the event that ends the step.
 constexpr double k_beside_end = 1e-6;
-constexpr std::size_t k_most_spans = 4000, k_most_spans_of_force = 200; // per step
-constexpr double k_half = 0.5;                                          // between false, 0, and true, 1
+constexpr std::size_t k_most_spans = 4000, k_most_spans_of_force = 200; // largest number of spans per step, for conditions and for forces
+constexpr double k_half = 0.5;                                          // threshold between false, 0, and true, 1
 constexpr double k_rounded_time = 4.0 * 0x1p-52;
-// Relative to the differences between three places of a step: a smooth formula exceeds their range by less.
+// Width of the band on either side, relative to the range of the formula at start, middle and end of a step; a smooth formula exceeds this
+// range by less.
 constexpr double k_beyond = 3.0;
-// The event finder locates changes later than this fraction of the first step after an event. A step with an earlier change is cut at a
-// multiple of its place.
+// In the first step after an event the event finder locates changes only beyond this fraction of it. A step with an earlier change is cut
+// at k_behind_change times the position of the change.
 constexpr double k_found_by_events = 1e-2, k_behind_change = 2.0;
 constexpr double k_smooth = 0.5;      // largest deviation of the middle from a cubic, relative to its distance from the range of the ends
-constexpr double k_least_peak = 1e-3; // relative to the range of the formula over the step: smaller peaks are ignored
-constexpr double k_beyond_values = 1e-9; // relative to the values
+constexpr double k_least_peak = 1e-3; // peaks below this fraction of the range of the formula over the step are ignored
+constexpr double k_beyond_values = 1e-9; // additional width of the band for rounding, relative to the values
 
 double value_of(const MotionOperand& operand, const FormulaInMotion& in_motion, const Snapshot& s) {
   switch (operand.kind) {
@@ -65,7 +66,7 @@ void FormulaSearch::add(int action, const FormulaInMotion& in_motion) {
   const std::size_t count = in_motion.formula->operands().size(), nodes = std::max(values_.size(), tree.size());
   MonitoredFormula& sought =
       sought_.emplace_back(MonitoredFormula{action, &tree, OperandCurves(leaves_of(in_motion)), {}, {}, &program, in_motion.unit});
-  // Switches are numbered in the order of the nodes.
+  // Switches of a formula are numbered in the order of its nodes.
   for (std::size_t i = 0; action == k_no_action && program.has_comparisons() && i < tree.size(); ++i) {
     const FormulaOp op = tree[i].op;
     const bool is_comparison = op == FormulaOp::less || op == FormulaOp::less_or_equal;
@@ -127,9 +128,9 @@ double FormulaSearch::place_of_peak(Integrator& integrator, Dynamics& dynamics, 
 }
 
 // Sets the band in which a force or rate may vary without a search for peaks: the range of its values at the ends and in the middle of the
-// step, and three times that range on either side. A middle value far outside the range of the ends belongs to the band only if it agrees
-// with the cubic through the ends and the quarter points; otherwise it may be a peak and is left outside. Returns false if a value is not
-// finite.
+// step, extended by three times this range on either side. A middle value far outside the range of the ends belongs to the band only if it
+// agrees with the cubic through the ends and the quarter points; otherwise it may be a peak and is excluded. Returns false if a value is
+// not finite.
 bool FormulaSearch::set_band(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics) {
   const double t0 = integrator.t0(), h = integrator.h();
   const auto seen = [&](double theta, const std::vector<double>& operands) { return value(sought, operands.data(), t0 + theta * h); };
@@ -162,7 +163,8 @@ double FormulaSearch::place_of_peak(MonitoredFormula& sought, Integrator& integr
   const double t0 = integrator.t0(), h = integrator.h(), t1 = integrator.t1();
   if (sought.is_condition()) {
     sought.high = k_half;
-    if (sought.is_outside(value(sought, sought.operands[0].data(), t0))) return 1.0; // it is true: the event finder looks for its end
+    // Already true at the start: the event finder locates its end.
+    if (sought.is_outside(value(sought, sought.operands[0].data(), t0))) return 1.0;
   } else if (!set_band(sought, integrator, dynamics)) {
     return 1.0;
   }
@@ -187,7 +189,8 @@ double FormulaSearch::place_of_peak(MonitoredFormula& sought, Integrator& integr
     const double middle = 0.5 * (span.begin + span.end);
     if (may_be_outside_at(sought, middle, t0 + middle * h)) {
       sought.curves.read(evaluate_dense(middle, integrator, dynamics), operands_.data());
-      if (sought.is_outside(value(sought, operands_.data(), t0 + middle * h))) // to the end: the event finder sees that
+      // If the value stays outside until the end of the interval, the event finder locates the change.
+      if (sought.is_outside(value(sought, operands_.data(), t0 + middle * h)))
         return ends_outside && range_over(sought, {middle, 1.0}, t0, h).low > k_half ? 1.0 : middle;
     }
     if (span.end - span.begin > k_shortest && count < most_spans) {
@@ -200,7 +203,7 @@ double FormulaSearch::place_of_peak(MonitoredFormula& sought, Integrator& integr
   return 1.0;
 }
 
-// Returns true if a comparison that matters for these bits may have another outcome than its bit.
+// Returns true if a comparison that is relevant with these bits may have another outcome than its bit.
 template <class Value> bool FormulaSearch::may_change(const MonitoredFormula& sought, SwitchBits bits, const Value& value_at) {
   const SwitchBits counting = sought.program->counting(bits);
   for (std::size_t s = 0; s < sought.comparisons.size(); ++s) {
@@ -213,7 +216,8 @@ template <class Value> bool FormulaSearch::may_change(const MonitoredFormula& so
   return false;
 }
 
-// Returns a place, in parts of the step and to a tenth of itself, where a comparison first differs from the mode; 1: nowhere.
+// Returns the position, as fraction of the step with a relative accuracy of a tenth, where a comparison first differs from the mode; 1 if
+// there is none.
 double FormulaSearch::first_change(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics) {
   const double t0 = integrator.t0(), h = integrator.h();
   const SwitchBits bits = dynamics.evaluation().mode[sought.unit];
@@ -241,7 +245,8 @@ double FormulaSearch::first_change(MonitoredFormula& sought, Integrator& integra
   return first;
 }
 
-// Test for curves that are not smooth: each operand may leave the range of its three samples by the width of that range on either side.
+// Test for curves that are not smooth: returns true if the formula may leave its band while each operand stays within the range of its
+// three samples, extended by its width on either side.
 bool FormulaSearch::may_be_outside_by_range(const MonitoredFormula& sought, double t0, double t1) {
   for (std::size_t i = 0; i < sought.curves.count(); ++i) {
     const auto [low, high] = std::minmax({sought.operands[0][i], sought.operands[1][i], sought.operands[2][i]});

@@ -1,19 +1,20 @@
 // Search for short changes of formulas inside a step, which neither the stages nor the ends of the step show.
 //
-// A condition of an action (`hypot(b.x - x, b.y) < r`, `b.x > 3 && b.x < 3.001`) or a force by formula (`exp(-b.x^2)`) may act for an arbitrarily
-// short time. Samples cannot exclude that, so the formula is bounded: its operands are polynomials with error bounds (operand_curves.h), and
-// the formula's tree gives an enclosure over any span of the step (mbd/formula/enclosure.h). Each formula has a band:
+// A condition of an action (`hypot(b.x - x, b.y) < r`, `b.x > 3 && b.x < 3.001`) or a force by formula (`exp(-b.x^2)`) may act for an
+// arbitrarily short time. Samples cannot exclude that, so the formula is bounded: its operands are polynomials with error bounds
+// (operand_curves.h), and the formula's tree gives an enclosure over any span of the step (mbd/formula/enclosure.h). Each formula has a
+// band:
 //   condition             false
-//   force, rate of state  its values at the ends and in the middle of the step, extended on both sides by three times their differences
-// A span whose enclosure lies in the band is skipped, another one is halved. If a condition is still undecided at 1e-9 of the step, away
+//   force, rate of state  its values at the ends and in the middle of the step, extended on both sides by three times their range
+// A span whose enclosure lies in the band is skipped, any other one is halved. If a condition is still undecided at 1e-9 of the step, away
 // from the ends of the step, the verdict is open. The search for forces ends earlier: a peak below 1e-3 of the range of the formula over
 // the step is ignored.
 //
-// After an event the comparison that changed may change back soon, and the event finder looks for that only from 1e-4 of the next step on.
+// After an event the comparison that changed may soon change back, but the event finder detects that only from 1e-4 of the next step on.
 // The first step after an event is therefore searched for the first comparison that differs from the mode, and cut if it is too long for
 // the event finder.
 //
-// Most steps are far from such changes: bounds of the operands from three places of the step exclude them. Formulas without short peaks
+// For most steps, bounds of the operands from three points of the step exclude such changes. Formulas without short peaks
 // (FormulaProgram::may_peak) are not searched.
 #pragma once
 
@@ -29,7 +30,7 @@
 
 namespace steplap {
 
-/// Finds places inside a step where the condition of an armed action becomes true, or a force or rate by formula leaves its band.
+/// Finds positions inside a step where the condition of an armed action becomes true, or a force or rate by formula leaves its band.
 class FormulaSearch {
 public:
   /// Searches the formulas of forces and states of `system` and the conditions of `group`, which may be null. Both must outlive the search.
@@ -37,29 +38,29 @@ public:
 
   /// Returns true if no formula needs a search.
   [[nodiscard]] bool is_empty() const { return sought_.empty(); }
-  /// Forgets the values at the end of the last step, because the state has jumped.
+  /// Discards the values at the end of the last step, because the state has jumped.
   void restart() {
     is_known_ = false;
     is_behind_event_ = true;
   }
-  /// Returns a place in the last step, as a fraction of it, where a formula is outside its band; 1 if there is none. `is_armed` has a flag per
-  /// action; null: none is armed. Precondition: Integrator::dense_output_is_accurate().
+  /// Returns a position in the last step, as a fraction of it, where a formula is outside its band; 1 if there is none. `is_armed`: a flag
+  /// per action; null: none is armed. Precondition: Integrator::dense_output_is_accurate().
   [[nodiscard]] double place_of_peak(Integrator& integrator, Dynamics& dynamics, const std::vector<char>* is_armed);
-  /// Returns the first time, s, at which it could not be decided whether a condition was true for less than 1e-9 of a step.
+  /// Returns the first time, s, at which a condition may have been true for less than 1e-9 of a step; empty if there was none.
   [[nodiscard]] const std::optional<double>& undecided() const { return undecided_; }
 
 private:
   static constexpr int k_degree = OperandCurves::k_degree;
   static constexpr int k_no_action = -1;
   struct MonitoredFormula {
-    int action = k_no_action; ///< action with this condition; k_no_action for formulas of forces and states
+    int action = k_no_action; ///< action with this condition; k_no_action for forces and states
     const FormulaTree* tree = nullptr;
     OperandCurves curves;
-    std::array<std::vector<double>, 3> operands; ///< at the start, middle and end of the step
-    std::vector<int> comparisons;                ///< per switch: its node in the tree; −1 if it is no comparison. Empty for conditions
+    std::array<std::vector<double>, 3> operands; ///< operands at the start, middle and end of the step
+    std::vector<int> comparisons;                ///< per switch: its node in the tree; −1 if it is not a comparison. Empty for conditions
     const FormulaProgram* program = nullptr;
-    int unit = -1;                                                                                         ///< index of the mode
-    double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity(); ///< band
+    int unit = -1; ///< index of the unit whose mode holds the outcomes of comparisons
+    double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity(); ///< limits of the band
 
     [[nodiscard]] bool is_condition() const { return action != k_no_action; }
     [[nodiscard]] bool is_outside(double value) const { return value < low || value > high; }
@@ -87,8 +88,8 @@ private:
   std::vector<MonitoredFormula> sought_;
   bool has_forces_ = false;
   double t_last_ = 0.0;                                       ///< end of the last step searched, s
-  bool is_known_ = false;                                     ///< the operands there are known
-  bool is_behind_event_ = true;                               ///< the next step is the first one after an event
+  bool is_known_ = false;                                     ///< operands at t_last_ are known
+  bool is_behind_event_ = true;                               ///< the next step is the first after an event
   double t_event_ = std::numeric_limits<double>::quiet_NaN(); ///< start of the first step after the last event, s
   std::vector<double> y_, dy_, operands_, values_;
   std::vector<Enclosure<k_degree>> leaf_, node_;

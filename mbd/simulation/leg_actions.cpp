@@ -14,9 +14,9 @@ namespace steplap {
 
 namespace {
 
-// Returns true if velocities changed by more than the closing of joints at rest leaves as rounding.
+// Returns true if velocities changed by more than the rounding errors left when joints at rest are activated.
 bool jumps(const std::vector<double>& before, const std::vector<double>& after) {
-  constexpr double k_share = 1e-6, k_least = 1e-9; // of the fastest velocity; m/s or rad/s
+  constexpr double k_share = 1e-6, k_least = 1e-9; // relative to the fastest velocity; absolute, m/s or rad/s
   double fastest = 0.0, most = 0.0;
   for (std::size_t i = 0; i < before.size(); ++i) {
     fastest = std::max(fastest, std::abs(before[i]));
@@ -25,7 +25,7 @@ bool jumps(const std::vector<double>& before, const std::vector<double>& after) 
   return most > k_share * fastest + k_least;
 }
 
-// The action whose joints close is the last one that has happened.
+// Assigns the impact to the last executed action, which activated the joints.
 void note_blow(RunRecord& record, std::size_t known, double lost) {
   for (std::size_t i = known; i-- > 0;) {
     Event& event = record.events[i];
@@ -60,7 +60,7 @@ RunLeg::RunLeg(RunLeg& before, const Changeover& change)
     const EventKind was = sliding_of(*unit.group, state_.mode[u]);
     const UnitMode before_it = state_.mode[u];
     state_.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
-    // Energy lost by the change of mode is included in the difference of stored energies below.
+    // The energy lost by the change of mode is part of the difference of stored energies below, hence not added here.
     if (state_.mode[u] != before_it) (void)unit.group->jump_inner(unit.index, state_.mode[u], dynamics_.evaluation(), state_.inner.data());
     if (const EventKind is = sliding_of(*unit.group, state_.mode[u]); is != was)
       record_->events.push_back({state_.t, system_.element_names[unit.element], is == EventKind::none ? EventKind::sticks : is});

@@ -9,9 +9,10 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_roundings = 64.0; // in units of a coordinate's rounding: a smaller displacement is rounding, however small the body
-constexpr long k_quiet_states = 16;  // consecutive states without a new direction, after which recording becomes half as frequent
-constexpr long k_most_stride = 32;   // largest number of steps between records; a direction hardly ever moves for a shorter time
+// Smallest displacement, in rounding errors of a coordinate, that counts as motion, however small the body.
+constexpr double k_roundings = 64.0;
+constexpr long k_quiet_states = 16; // after this many consecutive recorded states without a new direction the interval is doubled
+constexpr long k_most_stride = 32;  // largest number of steps between recorded states
 constexpr std::size_t k_most_states = 16;
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
@@ -60,14 +61,14 @@ bool MotionSpan::add(double t, const std::vector<double>& q) {
     displacement_[i] = weights_[i] * (q[i + 3] - begin_[i]);
     is_moved = is_moved || std::abs(displacement_[i]) > least_[i];
   }
-  if (!is_moved) return false; // small in every coordinate, therefore small outside of the span
+  if (!is_moved) return false; // small in every coordinate, therefore also outside the span
   const double whole = std::sqrt(dot(displacement_, displacement_));
   remove(displacement_);
   double beyond = 0.0;
   for (std::size_t i = 0; i < begin_.size(); ++i)
     if (least_[i] > 0.0) beyond = std::max(beyond, std::abs(displacement_[i]) / least_[i]);
   const double length = std::sqrt(dot(displacement_, displacement_));
-  constexpr double k_cancelled = 1e-12; // relative to the displacement: rounding errors of the projections
+  constexpr double k_cancelled = 1e-12; // components below this fraction of the displacement are rounding errors of the projections
   if (!(beyond > 1.0) || !(length > k_cancelled * whole)) return false;
   for (double& part : displacement_) part /= length;
   directions_.push_back(displacement_);

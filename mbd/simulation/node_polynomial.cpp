@@ -11,21 +11,21 @@ namespace steplap {
 namespace {
 
 constexpr int k_points = NodePolynomial::k_last + 1;
-// Largest number of divisions of a gap. A division at the maximum rarely needs more than two; 24 bisections leave an error of 4^-24 of the
-// differences of the coefficients.
+// Largest number of divisions of a gap. A division at the maximum rarely needs more than two; 24 bisections reduce the error to 4^-24 of
+// the differences of the coefficients.
 constexpr int k_most_cuts = 24;
-constexpr int k_newton_steps = 4;        // Newton iterations for the maximum; from the position of a control point they converge to
-                                         // rounding
-constexpr double k_beside_an_end = 0.02; // relative to a part: a division nearer to an end would hardly reduce the larger piece
+constexpr int k_newton_steps = 4; // Newton iterations for the maximum; from the position of a control point they converge to rounding
+// Smallest distance of a division from an end, relative to the part; a nearer one would hardly reduce the larger piece.
+constexpr double k_beside_an_end = 0.02;
 
 using Coefficients = std::array<double, k_points>;
 
-// Constructed before main(), so threads need no synchronisation.
+// Constructed before main(), so that threads need no synchronisation.
 struct Tables {
-  /// For level l and the gap after point j: contribution of value i to coefficient k.
+  /// bernstein[l][j][k][i]: contribution of value i to Bernstein coefficient k in the gap after point j of level l.
   double bernstein[NodePolynomial::k_levels + 1][NodePolynomial::k_last][k_points][k_points] = {};
-  /// For level l: contribution of the sum (k even) or difference (k odd) of values i and n − i to the bound of |p″| by Chebyshev polynomial
-  /// T_k, whose second derivative is at most k² (k² − 1)/3, and four times that on [0, 1].
+  /// bend[l][k][i]: contribution of Chebyshev polynomial T_k to the bound of |p″| on [0, 1] at level l, per unit of the sum (k even) or
+  /// difference (k odd) of values i and n − i. |T_k″| ≤ k² (k² − 1)/3, and 4 times that on [0, 1].
   double bend[NodePolynomial::k_levels + 1][k_points][k_points] = {};
 
   Tables() {
@@ -41,7 +41,8 @@ struct Tables {
         for (int i = 0; i <= 1 << level; ++i) set(level, gap, i);
   }
 
-  // Computes the Lagrange polynomial of point i as a product of factors that are linear in the gap; each raises the degree by one.
+  // Computes the Bernstein coefficients of the Lagrange polynomial of point i in a gap, as a product of linear factors; each raises the
+  // degree by one.
   void set(int level, int gap, int i) {
     const int step = NodePolynomial::spacing(level), n = 1 << level;
     const auto theta = [](int node) { return NodePolynomial::theta(node); };
@@ -79,8 +80,8 @@ constexpr auto k_weights = [] {
   return tables;
 }();
 
-// Three consecutive points: the gaps between them, before · behind (before + behind), and the largest excess of their parabola over them
-// per unit of `down` (may_exceed()). In a gap of width w it is w²/4 times the leading coefficient.
+// Data of three consecutive points: the two gaps, product = before · behind (before + behind), and the largest excess of their parabola
+// over the points per unit of `down` (may_exceed()). In a gap of width w the excess is w²/4 times the leading coefficient.
 struct Triple {
   double before = 0.0, behind = 0.0, product = 0.0, most = 0.0;
 };
@@ -98,14 +99,14 @@ constexpr auto k_triples = [] {
   return triples;
 }();
 
-// Searches the maximum in a gap, or in a part of one.
+// Searches the maximum of the polynomial in a gap.
 class TopSearch {
 public:
   TopSearch(int degree, double floor, double slack) : degree_(degree), best_(floor), slack_(slack) {}
 
   [[nodiscard]] bool is_below(double bound) const { return bound <= best_ + slack_; }
 
-  // Searches the part that begins at `from` and has the given width.
+  // Searches the part of the gap that begins at `from` and has the given width, with Bernstein coefficients b.
   void subdivide(const Coefficients& b, double from, double width, int cuts) {
     take(b[0], from);
     take(b[degree_], from + width);
@@ -131,8 +132,8 @@ public:
   [[nodiscard]] const std::optional<NodePolynomial::Top>& found() const { return found_; }
 
 private:
-  // Returns the position of the maximum by Newton's method from the largest coefficient; the middle if that leads to an end, or if the
-  // curvature is not that of a maximum.
+  // Returns the position of the maximum, by Newton's method from the largest coefficient; the middle of the part if the iteration leads to
+  // an end, or if the curvature is not that of a maximum.
   [[nodiscard]] double place_of_top(const Coefficients& b) const {
     const auto highest = std::max_element(b.begin(), b.begin() + degree_ + 1) - b.begin();
     double s = std::clamp(static_cast<double>(highest) / degree_, k_beside_an_end, 1.0 - k_beside_an_end);
@@ -179,7 +180,7 @@ const NodePolynomial::Weights& NodePolynomial::weights_at(int level, double thet
 }
 
 bool NodePolynomial::may_exceed(double limit, double error, int level, const Values& values, double sign, double best) {
-  constexpr double k_rounded = 1e-14; // relative to the values, far above their rounding errors here
+  constexpr double k_rounded = 1e-14; // rounding errors relative to the values, with a large margin
   if (!(best + error <= limit)) return true;
   const int n = 1 << level;
   for (int i = 1; i < n; ++i) {
@@ -190,7 +191,7 @@ bool NodePolynomial::may_exceed(double limit, double error, int level, const Val
     if (!(down > 0.0)) continue;
     const double middle = sign * values[i], three = middle + std::max({0.0, -p, -q});
     if (three + 2.0 * t.most * down + k_rounded * (std::abs(middle) + std::abs(three)) + error <= limit)
-      continue; // the limit is not exceeded, wherever its maximum is
+      continue; // the limit is not exceeded, wherever the parabola has its maximum
     const double slope = (p * t.behind * t.behind - q * t.before * t.before) / t.product;
     const double curve = down / t.product, shift = std::clamp(0.5 * slope / curve, -t.before, t.behind);
     const double top = middle + shift * (slope - curve * shift);
@@ -225,7 +226,7 @@ std::optional<NodePolynomial::Top> NodePolynomial::top_above(double floor, doubl
   TopSearch search(n, floor, slack);
   search.take(*most, theta(static_cast<int>(most - values_.begin()) * step));
   const double bend = largest_bend();
-  // The gaps next to the highest point come first, since their maximum excludes most of the others.
+  // The gaps next to the highest point come first, because their maximum excludes most of the others.
   const int first = std::max(static_cast<int>(most - values_.begin()) - 1, 0);
   for (int k = 0; k < n; ++k) {
     const int gap = (first + k) % n;

@@ -5,9 +5,9 @@
 //
 //   p = Σ b_k C(n,k) s^k (1 − s)^(n−k),  0 ≤ s ≤ 1,
 //
-// and does not exceed its largest coefficient. The interval is divided at the maximum (zero slope) or in the middle by de Casteljau's
-// algorithm; parts that cannot exceed the best value found are dropped, as are gaps that cannot according to max |p″| w²/8, with w their
-// width. The maximum is therefore never missed.
+// and does not exceed its largest coefficient. A gap is divided at the maximum (zero slope) or in the middle by de Casteljau's algorithm.
+// Parts whose coefficients do not exceed the best value found are dropped, and so are gaps of width w that cannot exceed it by more than
+// max |p″| w²/8. The maximum is therefore never missed.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ public:
   /// Returns the value at theta in [0, 1].
   [[nodiscard]] double at(double theta) const;
 
-  /// Weights for interpolation at a point of the next level that lies between those of the present one (barycentric form).
+  /// Weights for interpolation at a point of the next level, between the points of the present one (barycentric form).
   struct Weights {
     std::array<double, k_last + 1> of{}; ///< weights of the first 2^level + 1 values
     double sum = 0.0;                    ///< divisor of the weighted sum
@@ -44,8 +44,8 @@ public:
   /// Returns the weights for `theta`, a point of level + 1 that is not one of `level`.
   [[nodiscard]] static const Weights& weights_at(int level, double theta);
 
-  /// Returns true if the curve through `values` (times `sign`, 1 or −1), which has the error `error`, may exceed `limit`. The excess is
-  /// estimated as twice that of the parabolas through three consecutive points. `best`: the largest of sign · values.
+  /// Returns true if sign · curve may exceed `limit`, for the curve through `values` with the error `error`. `sign`: 1 or −1. The excess
+  /// over the values is estimated as twice that of the parabolas through three consecutive points. `best`: the largest of sign · values.
   [[nodiscard]] static bool may_exceed(double limit, double error, int level, const Values& values, double sign, double best);
 
   /// A maximum and its position.
@@ -60,7 +60,7 @@ private:
   static constexpr std::array<double, k_last + 1> k_theta{0.0, 0.03806023374435662, 0.14644660940672624, 0.30865828381745512,
                                                           0.5, 0.69134171618254488, 0.85355339059327376, 0.96193976625564338,
                                                           1.0};
-  /// Returns a bound of |p″|.
+  /// Returns a bound of |p″| on [0, 1].
   [[nodiscard]] double largest_bend() const;
 
   int level_;

@@ -12,15 +12,15 @@ namespace {
 
 constexpr int k_last = OperandCurves::k_degree;
 constexpr double k_ulp = 0x1p-52;
-// Relative rounding error of a channel's evaluation. If it is larger in a channel, its last coefficients show it.
+// Relative rounding error of evaluated operands. If an operand has more, its last coefficients show this.
 constexpr double k_floor = 8.0 * k_ulp;
-constexpr double k_shift_rounding = 32.0 * k_ulp; // relative to the sum of the coefficients, for a polynomial shifted to another point
-constexpr double k_check = 0.6180339887498949;    // position of the test point in a panel, far from all nodes
-constexpr double k_safety = 2.0;                  // coefficients never decrease exactly like a geometric series
-constexpr double k_slowest_fall = 0.8;            // ratio of successive coefficients above which the series has not converged
-constexpr double k_halved = 0.7;                  // an error that a half does not reduce below this is not that of a smooth curve
-constexpr double k_rough = 0.25;                  // an error above this fraction of the range makes the polynomial no better than the range
-                                                  // itself
+// Rounding error of a polynomial shifted to another point, relative to the sum of its coefficients.
+constexpr double k_shift_rounding = 32.0 * k_ulp;
+constexpr double k_check = 0.6180339887498949; // position of the test point in a panel, far from all nodes
+constexpr double k_safety = 2.0;       // safety factor of the extrapolated error, because coefficients never decrease exactly geometrically
+constexpr double k_slowest_fall = 0.8; // ratio of successive coefficients above which the series has not converged
+constexpr double k_halved = 0.7;       // if halving a panel does not reduce an error below this factor, the curve is not smooth
+constexpr double k_rough = 0.25;       // an error above this fraction of the range makes the polynomial no better than the range itself
 
 struct Tables {
   std::array<double, k_last + 1> node{};                              // nodes in s, ascending
@@ -28,7 +28,7 @@ struct Tables {
   std::array<std::array<double, k_last + 1>, k_last + 1> powers{};    // Chebyshev polynomials in powers of s
 };
 
-// Constructed before main(), so threads need no synchronisation.
+// Constructed before main(), so that threads need no synchronisation.
 const Tables k_tables = [] {
   Tables t;
   for (int i = 0; i < k_last / 2; ++i) {
@@ -47,8 +47,8 @@ const Tables k_tables = [] {
   return t;
 }();
 
-// Returns the sum of the omitted terms if the coefficients continue to decrease as the last four do; even and odd ones are treated in
-// pairs.
+// Returns the sum of the omitted terms, if the coefficients continue to decrease as the last four do; even and odd coefficients are
+// combined in pairs.
 double left_out(const std::array<double, k_last + 1>& chebyshev) {
   const double last = std::max(std::abs(chebyshev[k_last]), std::abs(chebyshev[k_last - 1]));
   const double before = std::max(std::abs(chebyshev[k_last - 2]), std::abs(chebyshev[k_last - 3]));
@@ -112,7 +112,7 @@ void OperandCurves::begin(const double* first, const double* last, const DenseEv
 void OperandCurves::halve(int panel, const DenseEvaluation& evaluate_dense) {
   const Panel whole = panels_[static_cast<std::size_t>(panel)];
   const double middle = 0.5 * (whole.begin + whole.end);
-  // Earlier samples are not stored; three more evaluations are a small part of those that follow.
+  // Samples of the halved panel are not stored; three further evaluations are a small part of those that follow.
   read(evaluate_dense(whole.begin), first_.data());
   read(evaluate_dense(middle), middle_.data());
   read(evaluate_dense(whole.end), last_.data());
@@ -178,9 +178,9 @@ Enclosure<OperandCurves::k_degree> OperandCurves::over(int panel, std::size_t le
   const Panel& p = this->panel(panel);
   const double scale = 2.0 / (p.end - p.begin), middle = std::clamp(scale * (0.5 * (begin + end) - p.begin) - 1.0, -1.0, 1.0);
   std::array<double, k_nodes> c = curve.c;
-  for (int k = 0; k < k_degree; ++k) // shift to the middle, by repeated division
+  for (int k = 0; k < k_degree; ++k) // shifts the polynomial to the middle of the interval, by repeated division
     for (int i = k_degree - 1; i >= k; --i) c[i] += middle * c[i + 1];
-  // The ends have rounding errors in s, so the interval is widened by a few units.
+  // The interval is widened by a few rounding errors, because its ends are rounded in s.
   const double half = 0.5 * scale * (end - begin) + 4.0 * k_ulp;
   double power = 1.0;
   for (double& x : c) {

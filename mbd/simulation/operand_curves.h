@@ -1,9 +1,10 @@
 // Polynomials with error bounds for the operands of formulas, over parts ("panels") of a stretch of a run.
 //
 // theta goes from 0 to 1 over the stretch. A panel is sampled at nine Chebyshev–Lobatto points, which define a polynomial of degree 8, the
-// degree of dop853's dense output. The decrease of its coefficients gives the error, and a tenth sample between the nodes must agree. If it
-// does not, or if the coefficients do not decrease (a kink or a jump), the curve is only enclosed by the range of its samples, widened by
-// the same amount on either side. Halving a panel gives better bounds. Limit: a feature between the nodes that no sample shows is missed.
+// degree of dop853's dense output. The error is estimated from the decrease of its coefficients, and a tenth sample between the nodes must
+// agree with the polynomial. If it does not, or if the coefficients do not decrease (a kink or a jump), the curve is only enclosed by the
+// range of its samples, extended by its width on either side. Halving a panel gives better bounds. Limit: a feature between the nodes that
+// no sample shows is missed.
 #pragma once
 
 #include "mbd/formula/enclosure.h"
@@ -19,36 +20,36 @@ class OperandCurves {
 public:
   static constexpr int k_degree = k_enclosure_degree; ///< degree of the polynomials
 
-  /// One operand over one panel, with s from −1 to 1.
+  /// An operand over one panel; s goes from −1 to 1.
   struct Curve {
     std::array<double, k_degree + 1> c{}; ///< coefficients of powers of s
     double error = 0.0;                   ///< error bound of the polynomial
     double floor = 0.0;                   ///< part of `error` due to rounding, which halving does not reduce
-    Interval hull;                        ///< enclosure of a curve that is not smooth
+    Interval hull;                        ///< enclosure of the curve by its samples, if it is not smooth
     bool is_smooth = false;               ///< false: only `hull` is valid
     bool lacks_values = false;            ///< some values are NaN
-    bool is_halving = true;               ///< the error is much smaller than that of the panel of which this is a half
+    bool is_halving = true;               ///< halving the parent panel has reduced the error considerably
   };
   /// A part of the stretch.
   struct Panel {
-    double begin = 0.0, end = 1.0; ///< in theta
-    int half = -1;                 ///< index of its first half; −1: not halved
+    double begin = 0.0, end = 1.0; ///< begin and end in theta
+    int half = -1;                 ///< index of the first of its two halves; −1: not halved
     int depth = 0;                 ///< number of halvings
   };
-  /// Function that returns the motion at theta.
+  /// Returns the motion at theta of the stretch.
   using DenseEvaluation = std::function<Snapshot(double theta)>;
 
-  /// Takes the operands.
+  /// `leaves`: operands of all formulas.
   explicit OperandCurves(std::vector<FormulaChannel::Leaf> leaves);
 
   /// Returns the number of operands.
   [[nodiscard]] std::size_t count() const { return leaves_.size(); }
-  /// Writes the values at `snapshot`, in SI.
+  /// Writes the operands at `snapshot` to `values`, in SI units.
   void read(const Snapshot& snapshot, double* values) const;
 
-  /// Sets straight lines between the values at both ends; each curve is within `error` of its line.
+  /// Uses the straight lines between the values at both ends; `error` is the largest deviation of each curve from its line.
   void begin_straight(const double* first, const double* last, const double* error);
-  /// Samples the stretch; the values at both ends are given.
+  /// Samples the stretch. `first`, `last`: values at both ends.
   void begin(const double* first, const double* last, const DenseEvaluation& evaluate_dense);
   /// Samples both halves of a panel.
   void halve(int panel, const DenseEvaluation& evaluate_dense);
@@ -57,14 +58,14 @@ public:
   [[nodiscard]] const Panel& panel(int i) const { return panels_[static_cast<std::size_t>(i)]; }
   /// Returns the number of panels, including halved ones.
   [[nodiscard]] int panels() const { return static_cast<int>(panels_.size()); }
-  /// Returns an operand over a panel.
+  /// Returns the curve of an operand over a panel.
   [[nodiscard]] const Curve& curve(int panel, std::size_t leaf) const {
     return curves_[static_cast<std::size_t>(panel) * leaves_.size() + leaf];
   }
   /// Returns true if halving the panel would improve its bounds.
   [[nodiscard]] bool can_improve(int panel, std::size_t leaf) const;
 
-  /// Returns an enclosure of an operand over a part of a panel, in s from −1 to 1.
+  /// Returns an enclosure of an operand over part of a panel; begin and end in s, from −1 to 1.
   [[nodiscard]] Enclosure<k_degree> over(int panel, std::size_t leaf, double begin, double end) const;
   /// Returns an enclosure of an operand at one point of a panel.
   [[nodiscard]] Enclosure<0> at(int panel, std::size_t leaf, double theta) const;

@@ -9,7 +9,7 @@ namespace steplap {
 namespace {
 
 constexpr int k_most = 7;
-using Basis = std::array<std::array<double, k_most>, k_most>; // coefficients of the Lagrange polynomial of each node
+using Basis = std::array<std::array<double, k_most>, k_most>; // basis[k][p]: coefficient of θ^p in the Lagrange polynomial of node k
 
 constexpr std::array<double, 7> k_seven = {0.0, 0.5 - 0.5 * 0.83022389627856693, 0.5 - 0.5 * 0.46884879347071421,
                                            0.5, 0.5 + 0.5 * 0.46884879347071421, 0.5 + 0.5 * 0.83022389627856693,
@@ -85,7 +85,7 @@ void PowerLedger::end(const Snapshot& snapshot) {
 }
 
 void PowerLedger::begin(double t, const Snapshot& snapshot) {
-  // Energy lost by impacts at the start is counted from those before them.
+  // At the start, energy lost by initial impacts is counted from State::impacts before those impacts.
   if (known_ == 0) {
     Snapshot unhurt = snapshot;
     unhurt.impacts = impacts_before_.data();

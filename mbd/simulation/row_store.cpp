@@ -23,13 +23,13 @@ std::string spill_folder() {
   return ::access("/var/tmp", W_OK | X_OK) == 0 ? "/var/tmp" : "/tmp";
 }
 
-// Opens an unnamed file.
+// Opens an unnamed temporary file in `folder`.
 int open_unnamed(const std::string& folder) {
 #ifdef O_TMPFILE
   const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (file >= 0) return file;
 #endif
-  std::string name = folder + "/steplap.XXXXXX"; // for file systems without unnamed files
+  std::string name = folder + "/steplap.XXXXXX"; // fallback for file systems without unnamed files
   const int named = ::mkostemp(name.data(), O_CLOEXEC);
   if (named >= 0) ::unlink(name.c_str());
   return named;
@@ -52,16 +52,17 @@ double* RowStore::add_row() {
   const std::size_t full_size = (mask_ + 1) * width_;
   if (tail_.size() == full_size) {
     if (file_ < 0 && (full_ + 2) * full_size > most_in_memory_) move_to_disk();
-    cached_ = ~std::size_t{0}; // the cached block may be the tail
+    cached_ = ~std::size_t{0}; // the cached block may have been the tail
     if (file_ >= 0) write_block(full_, tail_);
     else blocks_.push_back(std::exchange(tail_, {}));
     ++full_;
     tail_.clear();
   }
-  if (tail_.empty()) tail_.reserve(full_size); // unused capacity takes no physical memory, and rows are not moved when others are added
+  // Reserved memory that is never written needs no physical pages, and rows are not moved when others are added.
+  if (tail_.empty()) tail_.reserve(full_size);
   const double* before = tail_.data();
   tail_.resize(tail_.size() + width_);
-  if (cache_ == before) cached_ = ~std::size_t{0}; // the cached block has moved or may have moved
+  if (cache_ == before) cached_ = ~std::size_t{0}; // the buffer may have moved
   ++size_;
   return tail_.data() + (tail_.size() - width_);
 }
@@ -110,7 +111,7 @@ void RowStore::write_block(std::size_t block, const std::vector<double>& values)
 
 void RowStore::fail(int code, const std::string& folder) {
   has_failed_ = true;
-  if (file_ >= 0 && !blocks_.empty()) { // blocks still in memory remain there
+  if (file_ >= 0 && !blocks_.empty()) { // blocks that could not be written remain in memory
     ::close(file_);
     file_ = -1;
   }

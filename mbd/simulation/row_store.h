@@ -1,6 +1,6 @@
-// Storage for rows of numbers with bounded memory. Beyond a limit rows are moved to an unnamed temporary file, of which nothing remains
-// however the program ends. The file is in $TMPDIR, otherwise in /var/tmp, which is on disk even if /tmp is in memory. Rows can be read in
-// any order; reading is by blocks and fastest in the order of writing.
+// Storage for rows of numbers with bounded memory. Beyond a limit rows are moved to an unnamed temporary file, which disappears however the
+// program ends. The file is in $TMPDIR, otherwise in /var/tmp, which is on disk even if /tmp is in memory. Rows can be read in any order;
+// reading is by blocks and fastest in the order of writing.
 #pragma once
 
 #include <cstddef>
@@ -12,16 +12,16 @@ namespace steplap {
 /// Rows of equal width, appended at the end and read in any order.
 class RowStore {
 public:
-  static constexpr std::size_t k_most_in_memory = std::size_t{1} << 23; ///< numbers: 64 MB
+  static constexpr std::size_t k_most_in_memory = std::size_t{1} << 23; ///< default limit: 64 MB of numbers
 
-  /// Rows of `width` numbers. Beyond `most_in_memory` numbers they are moved to a file.
+  /// `width`: numbers per row. Beyond `most_in_memory` numbers rows are moved to a file.
   explicit RowStore(std::size_t width, std::size_t most_in_memory = k_most_in_memory);
   RowStore(const RowStore&) = delete;
   RowStore& operator=(const RowStore&) = delete;
   ~RowStore();
 
-  /// Returns a new row to be filled; null after a failure. Throws NumericalFailure once if there is no space: earlier rows remain, later
-  /// ones are lost.
+  /// Returns a new row to be filled; null after a failure. Throws NumericalFailure once if there is no disk space: earlier rows remain,
+  /// later ones are lost.
   [[nodiscard]] double* add_row();
   /// Returns the number of rows.
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -44,7 +44,7 @@ private:
   std::size_t width_, most_in_memory_;
   std::size_t shift_ = 0, mask_ = 0; ///< rows per block, a power of two
   std::size_t size_ = 0;
-  std::vector<std::vector<double>> blocks_; ///< complete blocks while all are in memory
+  std::vector<std::vector<double>> blocks_; ///< complete blocks, as long as all are in memory
   std::vector<double> tail_;                ///< block being filled
   std::size_t full_ = 0;                    ///< number of complete blocks
   int file_ = -1;

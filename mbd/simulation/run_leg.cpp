@@ -20,19 +20,19 @@ namespace steplap {
 
 namespace {
 
-// Events within this relative distance count as simultaneous. More simultaneous events than the limit mean that modes alternate without
+// Relative time difference up to which events count as simultaneous, and the largest number of simultaneous events. More mean that modes alternate without
 // progress of the motion.
 constexpr double k_same_instant = 1e-13;
 constexpr int k_max_events_at_once = 60;
-constexpr double k_least_rest = 1e-8; // relative to the run
+constexpr double k_least_rest = 1e-8; // remaining time, relative to the run, that may be passed in one step (is_sliding_mode_at_end())
 constexpr long k_steps_between_checks = 1L << 16;
-// Relative amount by which a sticking joint may exceed its limit. The mode problem determines wrenches to 1e-9 of the capacities, and
+// Relative amount by which a sticking joint may exceed its limit. Wrenches of the mode problem are accurate to 1e-9 of the capacities, and
 // events are located to rounding; a thousand times that is an error.
 constexpr double k_held_beyond = 1e-6;
-// Number of kinks of tables after which a run is aborted. They are harmless and cheap, but a longer list is of no use.
+// Number of kinks of force laws after which a run is aborted. Kinks are harmless and cheap, but a longer list is useless.
 constexpr long k_least_kinks = 1000000;
 constexpr long k_kinks_per_event = 10;
-constexpr double k_output_slack = 1e-9; // relative to the output step: a sample due within this distance of an end is taken there
+constexpr double k_output_slack = 1e-9; // tolerance of sampling times, relative to the output step
 
 } // namespace
 
@@ -52,12 +52,13 @@ RunLeg::RunLeg(const System& system, const State& initial, SimulationOptions opt
   keep_blows();
   project_and_set_up(nullptr, system_.initial_impacts);
   if (options_.output_step > 0.0) {
-    record_->samples = static_cast<long>(std::floor(state_.t / options_.output_step + k_output_slack)); // none are due before the start
+    record_->samples = static_cast<long>(std::floor(state_.t / options_.output_step + k_output_slack)); // no samples before the start
     record_sample(state_.t);
   }
 }
 
-// Precondition: the constraints are satisfied to rounding, or to the digits of the file.
+// Projects the initial state, and sets up integrator, extremes and energy account. Precondition: the constraints are satisfied to rounding,
+// or to the digits of the file.
 void RunLeg::project_and_set_up(const PowerLedger* before, const std::vector<Impact>& impacts) {
   dynamics_.set_state(state_);
   dynamics_.pack(state_, y_.data());
@@ -103,16 +104,16 @@ void RunLeg::refuse_time_stepping() const {
       "integrator, auto for one");
 }
 
-// Returns the next time at which a motion or a law changes abruptly. No step may pass it.
+// Returns the next time, s, at which a prescribed motion or a law changes abruptly. No step may cross it.
 double RunLeg::next_motion_limit() const {
   const auto next = std::upper_bound(system_.motion_breakpoints.begin(), system_.motion_breakpoints.end(), state_.t);
   return next == system_.motion_breakpoints.end() ? options_.end : std::min(*next, options_.end);
 }
 
-// Returns the time at which a step of length `step` must end for methods that average forces over it. Breakpoints of forces nearer than
-// k_own_step of the step are ignored.
+// Returns the time, s, at which a step of length `step` must end, for methods that average forces over a step. Breakpoints of forces nearer
+// than k_own_step are ignored.
 double RunLeg::next_limit_of_steps(double step) const {
-  constexpr double k_own_step = 1e-4; // relative to a step; far above the tolerance for rounding in time stepping
+  constexpr double k_own_step = 1e-4; // fraction of a step, far above the tolerance for rounding in time stepping
   const auto next = std::upper_bound(system_.breakpoints.begin(), system_.breakpoints.end(), state_.t + k_own_step * step);
   return next == system_.breakpoints.end() ? next_motion_limit() : std::min(*next, next_motion_limit());
 }
@@ -123,7 +124,7 @@ double RunLeg::next_limit() const {
   return next == system_.breakpoints.end() ? options_.end : std::min(*next, options_.end);
 }
 
-// Lets signals be read as left limits of the next breakpoint.
+// Sets the time up to which signals are read as left limits: the next breakpoint.
 void RunLeg::approach_limit() {
   limit_ = next_limit();
   dynamics_.set_left_limit_time(limit_);
@@ -135,7 +136,7 @@ void RunLeg::approach_limit() {
   integrator_->limit_step(longest);
 }
 
-// `is_evaluated`: the handler has just evaluated this state.
+// Restarts the integrator at state_. `is_evaluated`: the event handler has just evaluated this state.
 void RunLeg::restart(bool is_evaluated) {
   is_evaluated = is_evaluated && next_limit() == limit_;
   if (!is_evaluated) dynamics_.set_state(state_);
@@ -174,8 +175,8 @@ void RunLeg::fail_infinite(double t) const {
   throw ElementFailure(message.str(), {std::string(record_->events.back().element)});
 }
 
-// A joint that sticks must be within its limit; otherwise the event finder or the mode problem has failed and the results are wrong. For a
-// group that shares a load the event function is that of the group.
+// Checks that every sticking joint is within its limit. Otherwise the event finder or the mode problem has failed, and the results are
+// wrong. For a group that shares a load the event function is that of the group.
 void RunLeg::check_holding(double t, const std::vector<double>& event_value) const {
   for (const int f : joints_) {
     const double left = event_value[system_.frictions[f].slot(FrictionWatch::first)];
@@ -188,7 +189,7 @@ void RunLeg::check_holding(double t, const std::vector<double>& event_value) con
   }
 }
 
-// Precondition: y_ contains the state to be sampled.
+// Adds a sample row. Precondition: y_ contains the state to be sampled.
 void RunLeg::record_sample(double t) {
   dynamics_.rates(t, y_.data(), dy_.data());
   const Snapshot snapshot = dynamics_.snapshot(dy_.data());
@@ -197,12 +198,12 @@ void RunLeg::record_sample(double t) {
   if (options_.progress) options_.progress(t);
 }
 
-// To be called before the step is evaluated inside, up to t.
+// Updates the energy integrals (PowerLedger) up to t. To be called before the step is evaluated inside up to t.
 void RunLeg::keep_ledger(double t) {
   if (ledger_) ledger_->add_step(t, *integrator_, dynamics_);
 }
 
-// Projects a state within a step onto the joints. In absolute coordinates the dense output satisfies them only to the accuracy of the step.
+// Projects a state within a step onto the joints, which dense output in absolute coordinates satisfies only to the accuracy of the step.
 // Near a singular position the state is left unchanged.
 static void close_joints(Dynamics& dynamics, double t, std::vector<double>& y, double tolerance) {
   const Residual off = dynamics.residual(t, y.data());
@@ -215,7 +216,7 @@ static void close_joints(Dynamics& dynamics, double t, std::vector<double>& y, d
   }
 }
 
-// Takes the samples that are due in the step made, up to t.
+// Takes the samples that are due in the last step, up to time t.
 void RunLeg::sample_until(double t) {
   if (options_.output_step <= 0.0) return;
   for (;;) {
@@ -238,8 +239,9 @@ std::string RunLeg::owner_of(int slot) const {
   return element < 0 ? "" : std::string(system_.element_names[element]);
 }
 
-// After an event the next one is found from 1e-4 of a step on, and a step of a sliding mode of formulas may last to the end of the run. Each
-// event then leaves all but 1e-4 of the rest. What is below a part in 10⁹ of the run is passed in one step, with the last modes.
+// Returns true if events of a sliding mode of formulas accumulate at the end of the run. The event finder detects the next event only from
+// 1e-4 of a step on, and a step of a sliding mode may last to the end of the run, so each event leaves all but 1e-4 of the rest. A rest
+// below k_least_rest of the run is passed in one step, with the last modes.
 bool RunLeg::is_sliding_mode_at_end() const {
   return events_at_once_ >= k_max_events_at_once && options_.end - last_event_ <= k_least_rest * options_.end;
 }
@@ -256,7 +258,7 @@ void RunLeg::guard_against_chatter(double t, const std::vector<int>& fired) {
   message << (events_at_once_ >= k_max_events_at_once ? "events repeat without end at t = "
                                                       : "more events than simulation.max_events by t = ")
           << t << " s; ";
-  if (record_->events.empty()) { // no reported event so far
+  if (record_->events.empty()) { // no event has been reported so far
     message << "a switching value of '" << owner_of(fired.back()) << "' keeps changing its sign";
     throw ElementFailure(message.str(), {owner_of(fired.back())});
   }
@@ -284,8 +286,8 @@ void RunLeg::guard_against_crawl() {
   throw NumericalFailure(message.str());
 }
 
-// Returns true if all event functions belong to sliding joints. When its sheets separate such a joint has no force; the step has continued
-// beyond this kink.
+// Returns true if all event functions belong to sliding joints. Such a joint has no force when its sheets separate, and the step has
+// continued beyond this kink.
 bool RunLeg::are_joints(const std::vector<int>& slots) const {
   return std::all_of(slots.begin(), slots.end(), [this](int slot) {
     return std::any_of(system_.frictions.begin(), system_.frictions.end(), [slot](const FrictionUnit& unit) {
@@ -294,7 +296,7 @@ bool RunLeg::are_joints(const std::vector<int>& slots) const {
   });
 }
 
-// Tables of many points cause many kinks, so kinks have a separate limit, far above that of other events.
+// Kinks have a separate limit, far above that of other events, because tables with many points cause many kinks.
 static void guard_against_kinks(long kinks, long max_events, double t, const std::string& element) {
   const long most = std::max(k_least_kinks, k_kinks_per_event * std::min(max_events, std::numeric_limits<long>::max() / k_kinks_per_event));
   if (kinks <= most) return;
@@ -305,8 +307,8 @@ static void guard_against_kinks(long kinks, long max_events, double t, const std
       {element});
 }
 
-// At the tie of options_.other_slip: the slot of `sticks` that is nearest to its bound instead of those of `slips`. The equal run met the
-// tie at the same instant to the last bit.
+// Returns the fired slots, except at the tie options_.other_slip: there the slot of `sticks` nearest to its bound replaces those of
+// `slips`. Times are compared exactly, because the equal run met the tie at the same time, to the last bit.
 std::vector<int> RunLeg::slots_of_other(double t, const std::vector<int>& fired) const {
   const SimultaneousSlip& tie = *options_.other_slip;
   if (t != tie.t) return fired;
@@ -325,7 +327,7 @@ std::vector<int> RunLeg::slots_of_other(double t, const std::vector<int>& fired)
 
 void RunLeg::keep_blows() { record_->blows.insert(record_->blows.end(), handler_.blows().begin(), handler_.blows().end()); }
 
-// The integrator still has the step that led to the event.
+// Records simultaneous slips of the last event. Precondition: the integrator still has the step that led to the event.
 void RunLeg::keep_ties(double t) {
   const double before = t - integrator_->t0();
   for (SimultaneousSlip tie : handler_.ties()) {
@@ -340,12 +342,12 @@ void RunLeg::keep_ties(double t) {
 void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* event_value_before) {
   is_between_events_ = false;
   std::copy(y, y + dynamics_.dimension(), y_.begin());
-  // Projection starts with the factors of this state: with those of a sample its result would differ within its tolerance.
+  // The factors are computed at this state: with factors from a sample, the result of projection would differ within its tolerance.
   (void)dynamics_.residual(t, y_.data());
   dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
   energy_.check_step(dynamics_, t, y_.data());
   dynamics_.unpack(t, y_.data(), state_);
-  if (fired.empty()) dynamics_.set_left_limit_time(limit_ = next_limit()); // on the far side of the breakpoint
+  if (fired.empty()) dynamics_.set_left_limit_time(limit_ = next_limit()); // at a breakpoint, the evaluation after it uses the next limit
   if (ledger_ && ledger_->has_stored()) {
     dynamics_.rates(t, y_.data(), dy_.data());
     ledger_->end(dynamics_.snapshot(dy_.data()));
@@ -366,8 +368,8 @@ void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired
   restart(handler_.is_evaluated());
 }
 
-// `evaluations`: number of evaluations when the step was made. If there were none since, `dynamics_` is at the end of the step. (An
-// adaptive method may have used it for other purposes.)
+// Updates extremes after a step. `evaluations`: number of evaluations when the step was made; if it is unchanged, `dynamics_` is still at
+// the end of the step (an adaptive method may have used it otherwise).
 void RunLeg::update_extremes(long evaluations, bool is_last) {
   if (!extremes_) return;
   const bool is_at_end = !integrator_->is_adaptive() && dynamics_.evaluations() == evaluations;
@@ -375,10 +377,10 @@ void RunLeg::update_extremes(long evaluations, bool is_last) {
   if (options_.has_growth) keep_growth(integrator_->t1(), false);
 }
 
-// Keeps times evenly distributed over the run so far. When there are too many, every other one is dropped.
+// Records the extremes so far, at times evenly distributed over the run. When there are too many entries, every other one is dropped.
 void RunLeg::keep_growth(double t, bool is_last) {
   constexpr std::size_t k_most = 128;
-  constexpr double k_finest = 1e-4; // smallest interval, relative to the duration of the run, which may end early
+  constexpr double k_finest = 1e-4; // smallest interval between entries, relative to the planned duration; the run may end early
   std::vector<ExtremesSoFar>& kept = record_->growth;
   if (record_->growth_step == 0.0) record_->growth_step = k_finest * options_.end;
   if (!is_last && !kept.empty() && t < kept.back().t + record_->growth_step) return;
@@ -391,11 +393,11 @@ void RunLeg::keep_growth(double t, bool is_last) {
   kept.resize(count);
 }
 
-// Makes a step. Returns false if it is withdrawn. Throws NumericalFailure.
+// Attempts a step. Returns false if it is withdrawn. Throws NumericalFailure.
 bool RunLeg::try_advance() {
   try {
     integrator_->step(dynamics_, next_limit());
-  } catch (const JointsNearSingular&) { // in absolute coordinates rounding errors differ, so the step may succeed
+  } catch (const JointsNearSingular&) { // in absolute coordinates rounding errors differ, so the step may succeed there
     state_ = current_state();
     options_.coordinates = Coordinates::absolute;
     dynamics_.use_coordinates(Coordinates::absolute);
@@ -411,7 +413,7 @@ bool RunLeg::advance() {
   return !is_over() && !is_interrupted_;
 }
 
-// Ends the step where the condition of an armed action becomes true inside it, or a formula leaves the range that the step shows. Returns
+// Ends the step early if the condition of an armed action becomes true inside it, or if a formula leaves its band (FormulaSearch). Returns
 // true if the step is withdrawn for this purpose.
 bool RunLeg::ends_at_peak() {
   if (!integrator_->dense_output_is_accurate(dynamics_)) return true;
@@ -422,13 +424,13 @@ bool RunLeg::ends_at_peak() {
   return false;
 }
 
-// Handles the events in the step made, its samples and its end. Returns false if the step is withdrawn and must be tried again.
+// Handles the events in the last step, its samples and its end. Returns false if the step is withdrawn and must be repeated.
 bool RunLeg::pass_step() {
   const double limit = next_limit();
   constexpr long k_now_and_then = 64; // number of steps after which progress is reported even if no sample is due
   if (integrator_->steps() % k_now_and_then == 0) {
     if (options_.progress) options_.progress(state_.t);
-    stop_if_asked("in a simulation"); // of an estimate or a second method, which report no progress
+    stop_if_asked("in a simulation"); // for runs without progress reports: error estimates and second methods
   }
   const long evaluations = dynamics_.evaluations();
   guard_against_crawl();
@@ -477,7 +479,7 @@ bool RunLeg::pass_step() {
   return true;
 }
 
-// Takes the last row, wherever the run ends, and the final values of channels.
+// Adds the last sample row and the final values of channels, wherever the run ends.
 void RunLeg::end_run() {
   if (!is_between_events_) return; // the run was aborted at an event
   is_between_events_ = false;
@@ -490,15 +492,15 @@ void RunLeg::end_run() {
   finish_extremes();
 }
 
-// Precondition: y_ contains the final state.
+// Completes the extremes. Precondition: y_ contains the final state.
 void RunLeg::finish_extremes() {
   if (!extremes_) return;
   const double t = integrator_->t0();
   dynamics_.rates(t, y_.data(), dy_.data());
   extremes_->finish(dynamics_.snapshot(dy_.data()));
   if (options_.has_growth) keep_growth(t, true);
-  // Extrapolates linearly backwards. Within 1e-7 of the run velocities change too little to affect a rate, and the change of positions is
-  // still accurate to 1e-6.
+  // The state 1e-7 of the run earlier is extrapolated linearly. Velocities change too little in this time to affect a rate, and the change
+  // of positions is still accurate to 1e-6.
   constexpr double k_before = 1e-7;
   const double before = k_before * options_.end;
   for (int i = 0; i < dynamics_.dimension(); ++i) y_[static_cast<std::size_t>(i)] -= before * dy_[static_cast<std::size_t>(i)];
@@ -508,17 +510,19 @@ void RunLeg::finish_extremes() {
   extremes_->finish_rates(dynamics_.snapshot(dy_.data()), before);
 }
 
-// Reports a part of a load that a time step has averaged: bodies get its impulse, but no force or acceleration shows it.
+// Records in statistics_ that a time step has averaged part of a load: bodies receive its impulse, but no force or acceleration shows its
+// peak.
 void RunLeg::note_passed(double t0, double t1) {
   if (statistics_.passed_pulse) return;
-  constexpr double k_same_time = 64.0 * std::numeric_limits<double>::epsilon(); // tolerance for times that were meant to be equal
+  // Relative tolerance for times that were meant to be equal.
+  constexpr double k_same_time = 64.0 * std::numeric_limits<double>::epsilon();
   const std::vector<double>& times = system_.breakpoints;
   for (auto next = std::lower_bound(times.begin(), times.end(), t0); next != times.end() && next + 1 != times.end() && *(next + 1) < t1;
        ++next)
     if (*(next + 1) - *next > k_same_time * *(next + 1)) statistics_.passed_pulse = *next;
 }
 
-// Takes over the modes from a method that determines them itself, and reports the changes.
+// Adopts the modes at the end of the step from a method that determines them itself, and reports the changes.
 void RunLeg::pass_stepped() {
   const double t1 = integrator_->t1();
   note_passed(state_.t, t1);
@@ -527,7 +531,7 @@ void RunLeg::pass_stepped() {
     ledger_->add_stepped(t1, dynamics_.snapshot(dy_.data()));
   }
   sample_until(t1);
-  energy_.note(dynamics_, t1, integrator_->y1()); // before the next statement, which may discard the layout of the step
+  energy_.note(dynamics_, t1, integrator_->y1()); // must precede the next statement, which may discard the layout of the step
   const std::size_t known = record_->events.size();
   handler_.note_changes(state_, *integrator_->stepped_state(), record_->events);
   state_ = *integrator_->stepped_state();
@@ -549,8 +553,8 @@ void RunLeg::read_state(State& into) const {
   dynamics_.unpack(integrator_->t0(), integrator_->y0(), into);
 }
 
-// Layouts are recomputed, since they contain the relative poses of merged bodies. A displacement along the constraints violates them by its
-// square only.
+// Layouts are recomputed, because they contain the relative poses of merged bodies. A displacement along the constraints violates them only
+// by its square.
 void RunLeg::displace(const std::vector<double>& by) {
   state_ = current_state();
   for (std::size_t i = 0; i < by.size(); ++i) state_.q[i] += by[i];

@@ -1,4 +1,4 @@
-// A leg of a run: the part during which the same elements are active, with its steps, events, samples, and accounts of energy and accuracy.
+// A leg of a run: the interval during which the same elements are active, with its steps, events, samples, energy account and accuracy.
 //
 // A run without actions has one leg. When an action is due the leg is interrupted; Simulation executes the action and continues with this
 // leg, or with one in another system.
@@ -23,32 +23,32 @@
 
 namespace steplap {
 
-/// Computes one leg; owns all that changes. One object per thread.
+/// Computes one leg. All mutable data belong to this object; one per thread.
 class RunLeg {
 public:
-  /// First leg: starts at `initial`, projected onto the constraints. `actions`: null if the model has none.
+  /// First leg of a run: starts at `initial`, projected onto the constraints. `actions`: null if the model has none.
   RunLeg(const System& system, const State& initial, SimulationOptions options, ActionTriggers* actions);
-  /// Continues after the interruption of `before`, with the changes in `change`. Throws ElementFailure if an activated joint or rope does
-  /// not fit.
+  /// Next leg of a run: continues after the interruption of `before`, with the changes in `change`. Throws ElementFailure if an activated
+  /// joint or rope does not fit the pose.
   RunLeg(RunLeg& before, const Changeover& change);
-  RunLeg(const RunLeg&) = delete; // its parts refer to each other
+  RunLeg(const RunLeg&) = delete; // members refer to each other
   RunLeg& operator=(const RunLeg&) = delete;
 
   /// Makes one accepted step, or a step up to an event and through it. Returns false at the end, or if the leg is interrupted.
   bool advance();
-  /// Returns true if an action is due. Then go_on(), close() or another leg must follow.
+  /// Returns true if an action is due. The caller must then call go_on() or close(), or continue with another leg.
   [[nodiscard]] bool is_interrupted() const { return is_interrupted_; }
-  /// Continues after an interruption. To be called when no action is due any more.
+  /// Continues after an interruption. Precondition: no action is due any more.
   void go_on();
-  /// Computes the last values at the interruption.
+  /// Computes the final values of the leg at an interruption.
   void close(bool is_end_of_run);
   /// Sets the interruption if an action is due at state(), given the events from index `known` on.
   void interrupt_if_action_due(std::size_t known) { is_interrupted_ = is_action_due(known); }
-  /// Returns true at the end of the run, or after an element has ended it.
+  /// Returns true at the end of the run, or after an element has ended the run.
   [[nodiscard]] bool is_over() const { return state_.t >= options_.end || !handler_.stop_reason().empty(); }
 
   [[nodiscard]] const System& system() const { return system_; } ///< system in which the leg is computed
-  [[nodiscard]] const State& state() const { return state_; }    ///< at the last event or the end
+  [[nodiscard]] const State& state() const { return state_; }    ///< state at the last event or the end
   /// Returns the state after the last step, whether or not an event ended it.
   [[nodiscard]] State current_state() const;
   /// Writes the state to `into`, a state of this leg's system, without allocating.
@@ -58,17 +58,18 @@ public:
   [[nodiscard]] RunRecord& record() const { return *record_; } ///< record of the whole run so far
   /// Returns why an element ended the run ("'front joint' came apart"); empty if none did.
   [[nodiscard]] const std::string& stop_reason() const { return handler_.stop_reason(); }
-  /// Returns the statistics of this leg, without CPU time.
+  /// Returns the statistics of this leg; CPU time is not included.
   [[nodiscard]] RunStatistics statistics() const;
   /// Returns the ranges of all channels, if requested; complete after close() or the end.
   [[nodiscard]] std::vector<ChannelRange> ranges() const { return extremes_ ? extremes_->ranges() : std::vector<ChannelRange>{}; }
-  /// Returns how far contacts pressed beyond the ends of their parts in this leg; with the ranges.
+  /// Returns by how much contacts pressed beyond the ends of their parts in this leg (face_travel.h); empty without extremes.
   [[nodiscard]] std::vector<FaceTravel> face_travels() const { return extremes_ ? extremes_->face_travels() : std::vector<FaceTravel>{}; }
-  /// Computes the last values of a failed run, as far as known.
+  /// Computes the final values of a failed run, as far as known.
   void break_off();
 
 private:
-  void project_and_set_up(const PowerLedger* before, const std::vector<Impact>& impacts); // `impacts`: before those at the start
+  // `impacts`: State::impacts before the impacts at the start
+  void project_and_set_up(const PowerLedger* before, const std::vector<Impact>& impacts);
   void finish_extremes();
   void keep_growth(double t, bool is_last);
   [[nodiscard]] bool is_action_due(std::size_t known);
@@ -130,14 +131,14 @@ private:
   std::vector<double> y_, dy_;
   std::vector<int> joints_; ///< friction elements with several rows that may slip
   EnergyAccount energy_;
-  bool is_between_events_ = false; ///< the integrator and state_ are consistent
+  bool is_between_events_ = false; ///< integrator and state_ are consistent
   double limit_ = 0.0;             ///< time up to which signals are read as left limits: the next breakpoint, or the end
   double last_event_ = -std::numeric_limits<double>::infinity();
   int events_at_once_ = 0;
   long kinks_ = 0;                   ///< kinks of force laws; not counted in max_events, since tables can have many
-  long next_progress_check_ = 0;     ///< number of steps at which progress is checked next
-  double last_progress_check_ = 0.0; ///< time of the last check
-  long evaluations_behind_end_ = 0;  ///< evaluations for rates at the end, which are not part of the motion
+  long next_progress_check_ = 0;     ///< number of steps at which guard_against_crawl() checks next
+  double last_progress_check_ = 0.0; ///< time of the last progress check, s
+  long evaluations_behind_end_ = 0;  ///< evaluations for rates at the end, excluded from the statistics
   RunStatistics statistics_;
 };
 

@@ -19,12 +19,12 @@ class RunLeg;
 /// Returns the options given in a model.
 [[nodiscard]] SimulationOptions options_of(const Model& model);
 
-/// Computes a run; owns all that changes. One object per thread.
+/// Computes a run. All mutable data belong to this object; one per thread.
 class Simulation {
 public:
   /// Starts at `initial`, after projecting positions and velocities onto the constraints.
   Simulation(const System& system, const State& initial, SimulationOptions options);
-  Simulation(const Simulation&) = delete; // its parts refer to each other
+  Simulation(const Simulation&) = delete; // members refer to each other
   Simulation& operator=(const Simulation&) = delete;
   ~Simulation();
 
@@ -36,8 +36,8 @@ public:
   [[nodiscard]] const State& state() const; ///< state at the last event or the end, in the system of the present leg
   /// Returns the state after the last step, whether or not an event ended it.
   [[nodiscard]] State current_state() const;
-  /// Continues with the bodies displaced by `by`, (x, y, θ) for each including the ground. Displacements along the constraints must be
-  /// small enough to satisfy them by projection. Modes and friction states are kept.
+  /// Displaces the bodies by `by`, (x, y, θ) for each including the ground, in m and rad, and continues from there. Displacements along the
+  /// constraints must be small enough for projection. Modes and friction states are kept.
   void displace(const std::vector<double>& by);
   /// Returns the number of legs before the present one.
   [[nodiscard]] std::size_t past_legs() const;

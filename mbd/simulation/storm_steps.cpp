@@ -1,8 +1,8 @@
-// Storms of events: when the events of one element are too dense, time stepping takes over for an interval.
+// Event storms: when the events of one element are too dense, time stepping is used for an interval.
 //
-// All other elements move in this interval, too. Each change of mode of any element is reported as an event at the end of the part of a
-// step in which it appears. It occurred in this part or in the previous one: parts average loads, so a rising load reaches a limit half a
-// part late.
+// All other elements move in this interval, too. A change of mode of any element is reported as an event at the end of the part of a step
+// in which the change appears. It occurred in this part or in the previous one: parts average loads, so a rising load reaches a limit half
+// a part late.
 #include "mbd/base/shown_text.h"
 #include "mbd/model/method.h"
 #include "mbd/simulation/run_leg.h"
@@ -15,15 +15,15 @@ namespace steplap {
 
 namespace {
 
-// Length of a storm window: in units of √(L/g) (1 ms for L = 1 m), and at most 1/1000 of the run. An element may have up to 50 events in
-// each window, that is 50 000 in a run, before time stepping takes over.
+// Length of a storm window: relative to √(L/g) (1 ms for L = 1 m), and at most 1/1000 of the run. An element may have up to 50 events in
+// each window, that is 50 000 in a run, before time stepping is used.
 constexpr double k_storm_window = 1e-3 * std::numbers::pi;
-constexpr double k_storm_windows = 2.0; // windows covered by one interval of time stepping
+constexpr double k_storm_windows = 2.0; // length of an interval of time stepping, in windows
 
 } // namespace
 
-// Events form a storm if they are dense relative to the time scales of everything else: falling bodies, the duration of the run, and the
-// fastest harmonic of a load or drive, in which fewer than 50 events may belong to it.
+// Returns the length of the storm window, s. Events are a storm if they are dense compared with all other time scales: falling bodies, the
+// duration of the run, and the period of the fastest harmonic of a load or drive.
 double RunLeg::storm_window() const {
   const SceneUnits& scale = system_.scale;
   const double window = k_storm_window / std::max(scale.rate, std::numbers::pi / scale.duration);
@@ -31,7 +31,7 @@ double RunLeg::storm_window() const {
   return fastest > 0.0 ? std::min(window, 2.0 * std::numbers::pi / fastest) : window;
 }
 
-// Counts the events from index `known` on. If one of them makes a storm, covers it by time stepping and returns true.
+// Counts the events from index `known` on. If one of them completes a storm, passes an interval by time stepping and returns true.
 bool RunLeg::pass_storm(double t, std::size_t known) {
   if (!method(options_.integrator).may_step_over_storms || actions_ || system_.inner_count() > 0 || first_one_sided_row(system_) ||
       !handler_.stop_reason().empty())
@@ -54,8 +54,8 @@ void RunLeg::note_stepped(const State& before, const State& after, double locate
   for (std::size_t i = known; i < record_->events.size(); ++i) record_->events[i].located_within = located_within;
 }
 
-// Instead of locating each event of the element, time stepping covers an interval, in which modes change freely. The usual method continues
-// from its end.
+// Passes the interval up to `end` by time stepping, in which modes change without locating events. The selected method continues from
+// `end`.
 void RunLeg::step_through_storm(const std::string& element, double end) {
   if (!stepping_) stepping_ = std::make_unique<TimeStepping>(system_);
   is_between_events_ = false;
@@ -67,7 +67,7 @@ void RunLeg::step_through_storm(const std::string& element, double end) {
   const double step = options_.storm_step * storm_window();
   const long parts = stepping_->extra_parts();
   const int division = options_.settings.division;
-  double whole = 0.0, t_whole = begin; // step being divided, s, and its end
+  double whole = 0.0, t_whole = begin; // length of the step being divided, s, and its end
   int part = division;
   double last = begin; // start of the previous part, s
   const auto observe = [&](const State& before, const State& after) {
@@ -76,7 +76,7 @@ void RunLeg::step_through_storm(const std::string& element, double end) {
   };
   while (state_.t < end && stepping_->extra_parts() - parts < options_.storm_parts && handler_.stop_reason().empty()) {
     const double due = static_cast<double>(record_->samples) * options_.output_step;
-    if (part == division) { // all parts made: the next step, shortened by samples as if it were not divided
+    if (part == division) { // next step; samples shorten it before it is divided
       part = 0;
       t_whole = std::min({end, state_.t + division * step, next_limit_of_steps(division * step)});
       if (const double fastest = system_.fastest_at(0.5 * (state_.t + t_whole)); fastest > 0.0)
@@ -106,7 +106,7 @@ void RunLeg::step_through_storm(const std::string& element, double end) {
   events_at_once_ = 0;
   dynamics_.set_left_limit_time(next_limit());
   restart();
-  energy_.note(dynamics_, state_.t, y_.data()); // steps of order 1 have no energy bound of their own
+  energy_.note(dynamics_, state_.t, y_.data()); // first-order steps have no energy bound, so they are not checked
 }
 
 } // namespace steplap

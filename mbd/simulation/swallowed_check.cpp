@@ -13,7 +13,7 @@ SwallowedCheck::SwallowedCheck(const System& system) {
 void SwallowedCheck::check(Dynamics& dynamics, double t, const double* y, const std::vector<UnitMode>& modes,
                            const std::vector<double>& event_value) const {
   const auto motion = [&dynamics, t, y] {
-    (void)dynamics.mechanical_energy(t, y); // computes the motions of all bodies
+    (void)dynamics.mechanical_energy(t, y); // called because it computes the motions of all bodies
     return static_cast<const Motion<double>*>(dynamics.evaluation().motion);
   };
   for (const SwallowingContacts* group : contacts_) {

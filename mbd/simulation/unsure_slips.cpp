@@ -1,4 +1,4 @@
-// Contribution of very slow slips to extremes: the slower a joint slides, the less accurate are its direction and its wrench.
+// Extremes reached during very slow slips: the slower a joint slides, the less accurate are its direction and its wrench.
 #include "mbd/simulation/extremes.h"
 
 #include <algorithm>
@@ -9,16 +9,17 @@ namespace steplap {
 
 namespace {
 
-// Multiple of the accuracy of a step: errors of steps add up, and at this speed the direction is accurate to some thousandths.
+// Slip velocities below this multiple of the accuracy of a step have an unknown direction. Errors of steps add up; at this speed the
+// direction is accurate to some thousandths.
 constexpr double k_unsure = 300.0;
 
-// Returns true if the channel depends on the direction of slips. Positions, velocities and energies do not.
+// Returns true if the channel depends on the direction of slip, as positions, velocities and energies do not.
 bool turns_with_slips(const Channel& channel) {
   const std::string_view unit = channel.unit;
   return unit != "m" && unit != "rad" && unit != "m/s" && unit != "rad/s" && unit != "J";
 }
 
-// Returns true if a slip is so slow that its law is regularised and no longer has a direction.
+// Returns true if a slip is so slow that its regularised law no longer has a direction.
 bool is_slip_ending(const State& state) {
   return std::any_of(state.friction.begin(), state.friction.end(), [](const FrictionState& friction) {
     return friction.phase == FrictionPhase::slip && !friction.is_onset && friction.onset_stage != 0;
@@ -27,8 +28,8 @@ bool is_slip_ending(const State& state) {
 
 } // namespace
 
-// Updates slip_ at the last evaluation of `dynamics`. At the onset of slip the direction is known from the multipliers, even at zero speed.
-// `is_new`: after an event, where values can become certain again, but not uncertain.
+// Updates slip_ and is_unsure_ from the last evaluation of `dynamics`. At the onset of slip the direction is known from the multipliers,
+// even at zero speed. `is_new`: after an event, where a direction can become known but not unknown.
 void ExtremeFinder::check_slip_directions(const Integrator& integrator, Dynamics& dynamics, bool is_new) {
   const double before = slip_;
   slip_ = std::numeric_limits<double>::infinity();

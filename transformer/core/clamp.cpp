@@ -14,7 +14,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_most_warming = 200.0; // K: a larger value is probably a temperature, not a difference
+constexpr double k_most_warming = 200.0; // temperature rise, K, above which the value is probably a temperature
 
 [[noreturn]] void wrong(const Clamp& clamp, const std::string& field, const std::string& message) {
   throw ModelError(clamp.place(field), "clamp '" + clamp.name + "': " + message);
@@ -28,7 +28,7 @@ std::vector<const Clamp*> clamps_of(const Core& core, const Model& model) {
   return found;
 }
 
-// Determines the outer faces of the yoke and its middle, in the axes of the active part from its centre of gravity.
+// Determines the outer faces of the yoke and its middle, in the axes of the active part from its centre of gravity, m.
 void measure_yoke(const Core& core, const Model& model, const std::vector<const Clamp*>& clamps, YokeClamping& yoke) {
   double widest = 0.0;
   for (const Packet& packet : stack_of(core).packets) {

@@ -23,22 +23,21 @@ namespace steplap {
 
 /// Equal clamps on one yoke or on both.
 struct Clamp : TableObject {
-  std::string core;                                 ///< name of the core
-  std::string at = "both";                          ///< yokes: "top", "bottom" or "both"
-  std::optional<long> count;                        ///< clamps on each yoke; default: number of `places`, or 1
-  std::vector<double> places;                       ///< positions along the yoke from the middle between the outer limbs, m; none:
-                                                    ///< symmetric
-  double preload = 0.0;                             ///< force of each clamp as tightened, N
-  double relaxation = 0.0;                          ///< fraction lost by relaxation
-  std::optional<double> stiffness, stack_stiffness; ///< of a clamp and of the stack under it, N/m
+  std::string core;           ///< name of the core
+  std::string at = "both";    ///< clamped yokes: "top", "bottom" or "both"
+  std::optional<long> count;  ///< number of clamps on each yoke; default: number of `places`, or 1
+  std::vector<double> places; ///< positions along the yoke from the middle between the outer limbs, m; none: symmetric
+  double preload = 0.0;       ///< force of each clamp as tightened, N
+  double relaxation = 0.0;    ///< fraction of the force lost by relaxation
+  std::optional<double> stiffness, stack_stiffness; ///< stiffness of a clamp, and of the stack under it, N/m
   double settling = 0.0;                            ///< settling of the stack, m
   double warming = 0.0;                             ///< temperature rise, K
   std::optional<double> expansion;                  ///< thermal expansion of the clamp, 1/K
   double stack_expansion = 12e-6;                   ///< thermal expansion of the stack, 1/K
   std::optional<double> length;                     ///< clamped length, m; default: depth of the stack
-  std::optional<double> yoke_length;                ///< m; default: distance between the outer faces of the outer limbs
+  std::optional<double> yoke_length;                ///< length of the yoke, m; default: distance between the outer faces of the outer limbs
 
-  /// Returns the present force of each clamp, N; negative: it is loose. `depth` of the stack, m.
+  /// Returns the present force of each clamp, N; negative: the clamp is loose. `depth`: depth of the stack, m.
   [[nodiscard]] double force(double depth) const;
 };
 
@@ -47,19 +46,19 @@ struct YokeClamping {
   double force = 0.0;  ///< total force, N
   double moment = 0.0; ///< moment about the middle of the yoke, N m
   double length = 0.0; ///< length of the yoke, m
-  double height = 0.0; ///< height of its highest packet, m
-  double middle = 0.0; ///< position of its middle along the active part, from the centre of gravity, m
+  double height = 0.0; ///< height of the highest packet of the yoke, m
+  double middle = 0.0; ///< position of the yoke's middle along the active part, from its centre of gravity, m
   [[nodiscard]] double pressure() const { return force / (length * height); }
-  /// Returns the pressure at x from the middle relative to pressure().
+  /// Returns the pressure at x, m from the middle of the yoke, relative to pressure().
   [[nodiscard]] double share(double x) const { return 1.0 + 12.0 * moment * x / (force * length * length); }
 };
 
 [[nodiscard]] const TableKind& clamp_kind();
 
-/// Returns true if the fields of all clamps of the core are within their ranges. If not, the error is reported where these tables are
-/// checked, and the clamps must not be used.
+/// Returns true if the fields of all clamps of the core are within their ranges. Otherwise the clamps must not be used; the errors are
+/// reported when the tables are checked.
 [[nodiscard]] bool has_sound_clamps(const Core& core, const Model& model);
-/// Returns true if the core is pressed by clamps of the model and not by its own pressure.
+/// Returns true if the pressure of the core is that of clamps of the model, not its own field.
 [[nodiscard]] bool is_clamped(const Core& core, const Model& model);
 /// Returns the resultant for the top or bottom yoke of the core. Throws ModelError for invalid clamps.
 [[nodiscard]] YokeClamping clamping_of(const Core& core, const Model& model, bool is_top);

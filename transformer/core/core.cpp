@@ -181,7 +181,7 @@ const TableKind& core_kind() {
     add_friction(k.fields);
     add_joints(k.fields);
     k.holds<Core>();
-    k.reads_masses = k.reads_elements = false; // only names of elements and outlines of sheets are read
+    k.reads_masses = k.reads_elements = false; // the table reads only names of elements and outlines of sheets
     k.apply = [](const Element& table, Model& model) {
       const auto& core = static_cast<const Core&>(table);
       if (has_sound_clamps(core, model)) build_core(clamped(core, model), model);

@@ -15,11 +15,12 @@ namespace steplap {
 
 namespace {
 
-// Ratio of the given mass of a body to that of its sheets outside which the model is refused; tie plates, bindings and the like add a few
-// percent. Between this and the plausible range (plausible.cpp) there is a remark.
+// Range of the ratio of a body's given mass to that of its sheets; outside it the model is rejected. Tie plates, bindings and the like add
+// a few percent. Within it, beyond the plausible range (plausible.cpp), there is a remark.
 constexpr double k_least_steel = 0.8, k_most_steel = 1.6;
 
-// Returns the middle of the limb in its body's frame: the origin. The paper's strips are relative to the centre of gravity.
+// Returns the middle of the limb in its body's frame: the origin, except for the paper's strips, which are relative to the centre of
+// gravity.
 Vec2 middle_in_frame(const Core& core, const Body& limb) { return core.has_strips() ? limb.cg : Vec2(Vec2::Zero()); }
 
 // Expands one [[core]]; collects all errors before it reports them.
@@ -89,8 +90,8 @@ private:
 
   const Core& core_;
   Model& model_;
-  std::vector<std::string> limbs_;  ///< outer ones, then middle ones
-  std::vector<double> part_shares_; ///< for the present limb; empty: packets are not distinguished
+  std::vector<std::string> limbs_;  ///< outer limbs, then middle ones
+  std::vector<double> part_shares_; ///< fraction of the present limb's steel in each packet; empty: packets are not distinguished
   std::vector<Diagnostic> problems_;
 };
 
@@ -161,7 +162,7 @@ void CoreBuilder::check_joint(const std::string& name, const std::string& limb) 
   check_settings(*joint);
 }
 
-// Checks that settings for the joints given here agree with those of a joint declared elsewhere.
+// Checks that the core's settings for joints agree with those of a joint that the model declares separately.
 void CoreBuilder::check_settings(const StepLapJoint& joint) {
   const auto check = [&](const char* field, bool is_same) {
     if (is_given(field) && !is_same)
@@ -173,7 +174,7 @@ void CoreBuilder::check_settings(const StepLapJoint& joint) {
   check("on_apart", core_.on_apart == joint.on_apart);
   check("least_margin", core_.least_margin == joint.least_margin);
   check("most_slide", core_.most_slide == joint.most_slide);
-  // Settings given in the joint apply to it alone; settings given here but missing there would be ignored, which is an error.
+  // A declared joint has its own settings. Settings of the core that the joint lacks would be ignored, so they are an error.
   const auto check_said = [&](const char* field, bool is_said) {
     if (is_given(field) && !is_said)
       error("'" + std::string(field) + "' is for joints that this table adds; step_lap_joint '" + joint.name +
@@ -216,7 +217,7 @@ void CoreBuilder::add_joint(std::size_t i, const CoreGeometry& geometry) {
 // Checks that overlaps remain after holes and edges of sheets are removed.
 void CoreBuilder::check_packets(std::size_t i, const CoreCorner& corner, const CoreGeometry& geometry) {
   const Stack& stack = geometry.stack();
-  if (core_.is_counted() || !problems_.empty()) return; // report only once
+  if (core_.is_counted() || !problems_.empty()) return; // one error suffices
   for (std::size_t p = 0; p < stack.packets.size(); ++p) {
     if (!stack.is_by_place && likeness(stack, p) != p) continue;
     const auto holds = [&](const Lap& lap) { return !lap.is_between && geometry.packet_of(lap) == p && lap.area > 0.0; };
@@ -227,8 +228,8 @@ void CoreBuilder::check_packets(std::size_t i, const CoreCorner& corner, const C
   }
 }
 
-// Determines the packets held by the interfaces of a joint. If there are several, each must be held separately. For a limb described by
-// several tables, the fractions of its total steel are unknown here.
+// Computes the fraction of a limb's steel in each packet, if there are several: each packet must then be held separately. If several tables
+// describe the limb, the fractions of its total steel are unknown here.
 void CoreBuilder::find_parts(std::size_t i, const CoreGeometry& geometry) {
   part_shares_.clear();
   if (count_cores_of(model_, limbs_[i]) > 1) return;
@@ -257,9 +258,9 @@ void CoreBuilder::press(StepLapInterface& face, std::size_t i, const CoreCorner&
   face.transverse_pressure = pressure.transverse;
   face.transverse_spread = pressure.transverse_spread;
   if (pressure.least >= 0.0) return;
-  face.pressure = core_.pressure; // errors in it are reported here
+  face.pressure = core_.pressure; // errors of the pressure are reported here
   face.pressure_gradient = Vec2::Zero();
-  if (!problems_.empty()) return; // report only once
+  if (!problems_.empty()) return; // one error suffices
   const std::string field = !corner.is_top && core_.bottom_pressure_gradient ? "bottom_pressure_gradient" : "pressure_gradient";
   const std::string level = !corner.is_top && core_.bottom_pressure ? "bottom_pressure" : "pressure";
   error("'" + field + "' is too steep for '" + level + "': at " + corner.place + " of '" + limbs_[i] + "' sheets would be pressed by " +
@@ -300,14 +301,14 @@ void CoreBuilder::add_interface(std::size_t i, const CoreCorner& corner, const L
 }
 
 bool is_same_sheet(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
-  constexpr double k_same = 1e-9; // m
+  constexpr double k_same = 1e-9; // tolerance of positions, m
   return a.size() == b.size() &&
          std::equal(a.begin(), a.end(), b.begin(), [](const Vec2& p, const Vec2& q) { return (p - q).norm() < k_same; });
 }
 
-// Throws if the same sheets are given twice at the same place, which would double the capacity.
+// Adds an error if the same sheets are given twice at the same position, which would double the capacity.
 void CoreBuilder::refuse_repetition(const StepLapInterface& face) {
-  if (!problems_.empty()) return; // report only once
+  if (!problems_.empty()) return; // one error suffices
   const std::string own = core_.name + ": ";
   for (const StepLapInterface* other : elements_of<StepLapInterface>(std::as_const(model_))) {
     if (other->joint != face.joint || other->name.rfind(own, 0) == 0) continue;
@@ -344,9 +345,9 @@ void CoreBuilder::give_steel(std::size_t i, const CoreGeometry& geometry) {
     body->cg = rotated(steel.centre, active_part().angle - body->angle);
 }
 
-// The active part contains the yokes and more.
+// Checks the mass of the active part, which contains the yokes and more.
 void CoreBuilder::check_yokes() {
-  const Core* last = nullptr; // for several tables the last one reports it
+  const Core* last = nullptr; // of several tables, the last one reports the error
   for (const Core* core : tables_of<Core>(std::as_const(model_)))
     if (core->active_part == core_.active_part) last = core;
   if (!problems_.empty() || (last && last->name != core_.name) || active_part().mass <= 0.0) return;
@@ -375,7 +376,7 @@ std::vector<Vec2> CoreBuilder::limb_corners(std::size_t i, const CoreGeometry& g
       const CornerFrame corner = corner_frame(mitre, side, level);
       end = {corner.origin, corner.origin + corner.length * corner.along};
     }
-    // Order: from left to right at the bottom, back again at the top.
+    // Corners from left to right at the bottom, back again at the top.
     std::sort(end.begin(), end.end(), [level](const Vec2& a, const Vec2& b) { return level * a.x() > level * b.x(); });
     corners.insert(corners.end(), end.begin(), end.end());
   }
@@ -391,7 +392,7 @@ void CoreBuilder::draw_limbs(const CoreGeometry& geometry) {
     }
 }
 
-// Outline of the active part: the area between the outer limbs, with yokes and windings.
+// Sets the outline of the active part: the area between the outer limbs, with yokes and windings.
 void CoreBuilder::draw_active_part(const CoreGeometry& geometry) {
   const Body* rear = nullptr;
   const Body* front = nullptr;
@@ -453,7 +454,7 @@ bool shares_limb(const Core& a, const Core& b) {
   return false;
 }
 
-// Tables with the same pair of yokes, and the parts of the yokes replaced by their limbs.
+// Tables with the same pair of yokes, and the parts of the yokes that their limbs replace.
 struct Yokes {
   struct Limb {
     LimbPlace place;
@@ -473,7 +474,7 @@ struct Yokes {
   }
 };
 
-// Returns true if all fields are within their ranges. Dimensions may be computed from such tables only.
+// Returns true if all fields are within their ranges, so that dimensions may be computed from the table.
 bool is_within_ranges(const TableEntry& entry, const Model& model) {
   std::vector<Diagnostic> problems;
   FieldChecker(model, problems).check(entry.kind->fields, entry.table.get(), "", [&entry](const std::string&) {

@@ -9,7 +9,7 @@
 
 namespace steplap {
 
-/// Adds everything to the model. Throws ModelError with all errors found.
+/// Adds joints, interfaces, steel and outlines to the model. Throws ModelError with all errors found.
 void build_core(const Core& core, Model& model);
 
 /// Returns the position of the middle of a limb relative to the active part's centre of gravity, in its axes, m.
@@ -22,7 +22,7 @@ void build_core(const Core& core, Model& model);
 /// of different width) count once; others add up (further parts of the stack). Nothing if it cannot be determined: counted overlaps,
 /// inconsistent fields, a limb that is not a body, or a yoke without an outer limb at either end.
 [[nodiscard]] std::optional<double> yoke_steel(const Model& model, const std::string& active_part);
-/// Returns the number of tables that name the limb; if several, each describes a part of its steel.
+/// Returns the number of tables that name the limb. If there are several, each describes a part of its steel.
 [[nodiscard]] std::size_t count_cores_of(const Model& model, const std::string& limb);
 
 } // namespace steplap

@@ -13,10 +13,10 @@ namespace steplap {
 
 namespace {
 
-// With a mitre flatter or steeper relative to the yoke, limb and yoke would meet edge to edge.
+// Range of the mitre's angle relative to the yoke; beyond it limb and yoke would meet edge to edge.
 constexpr double k_least_angle = 10.0 * std::numbers::pi / 180.0;
 constexpr double k_largest_angle = 80.0 * std::numbers::pi / 180.0;
-constexpr long k_most_sheets = 10'000'000; // more are probably a mistake, and would overflow a long
+constexpr long k_most_sheets = 10'000'000; // a larger number of sheets is probably a mistake, and could overflow a long
 
 // Formats a computed length with a reasonable number of digits.
 std::string metres(double value) {
@@ -253,7 +253,7 @@ void DimensionCheck::check_holes() {
               "bolt_holes");
 }
 
-// A hole outside of all sheets is an error.
+// Checks that each bolt hole is in at least one sheet.
 void DimensionCheck::check_places_of_holes() {
   const Stack stack = stack_of(core_);
   double width = 0.0, height = 0.0;
@@ -326,7 +326,8 @@ void DimensionCheck::check_books() {
   if (problems_.empty()) check_laps(stack, geometry);
 }
 
-// Packets with different mitres have different pitches, and a duct may be between any two layers of a thin packet.
+// Checks that layers overlap: packets with different mitres have different pitches, and a duct may be between any two layers of a thin
+// packet.
 void DimensionCheck::check_laps(const Stack& stack, const CoreGeometry& geometry) {
   for (const bool is_middle : {false, true}) {
     if ((is_middle ? core_.middle_limbs : core_.limbs).empty()) continue;
@@ -363,7 +364,7 @@ void DimensionCheck::check_cuts() {
       if (!core_.is_counted())
         half = 0.5 * (geometry.pitch(p, is_middle) * static_cast<double>(stack.book.steps - 1) + stack.book.clearance);
       check_cut(p, is_middle, -half, half);
-      if (!problems_.empty()) return; // report only once
+      if (!problems_.empty()) return; // one error suffices
     }
 }
 

@@ -5,7 +5,7 @@
 
 namespace steplap {
 
-/// Returns all errors, each with the location of its field. If there are none, a CoreGeometry can be made.
+/// Returns all errors, each with the location of its field. If there are none, the core is valid input for CoreGeometry.
 [[nodiscard]] std::vector<Diagnostic> check_dimensions(const Core& core);
 
 } // namespace steplap

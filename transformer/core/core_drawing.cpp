@@ -22,7 +22,7 @@ constexpr PanelFrame k_upper_right{2.0 * k_gap + 520.0, k_gap + k_title, 440.0, 
 constexpr double k_lower = 2.0 * (k_gap + k_title) + k_height;
 constexpr PanelFrame k_lower_left{k_gap, k_lower, 480.0, k_height};
 constexpr PanelFrame k_lower_right{2.0 * k_gap + 480.0, k_lower, 480.0, k_height};
-constexpr long k_most_layers = 22; // layers of a book that are drawn
+constexpr long k_most_layers = 22; // number of layers of a book that are drawn
 
 // The style adapts to dark pages (prefers-color-scheme).
 const char* const k_style =
@@ -40,7 +40,7 @@ const char* const k_style =
 
 std::string millimetres(double value) { return plain_millimetres(value) + " mm"; }
 
-// Smallest circle around the section: its centre, on the limb's axis, in depth direction.
+// Smallest circle around the section, m: position of its centre in depth direction, on the limb's axis, and diameter.
 struct Round {
   double centre = 0.0, diameter = 0.0;
 };
@@ -72,7 +72,7 @@ private:
     const Core* core;
     std::string name;
     bool is_middle;
-    Vec2 middle; ///< in the active part's axes
+    Vec2 middle; ///< middle of the limb in the active part's axes, m
     double side;
   };
 
@@ -150,7 +150,7 @@ void Drawing::draw_limb(SheetPanel& panel, const Limb& limb) const {
   }
 }
 
-// Draws yokes behind and limbs in front: every packet, the largest first. Windows stay open.
+// Draws yokes behind and limbs in front: every packet, the largest first. Windows are left open.
 void Drawing::draw_elevation() {
   const std::vector<Limb> all = limbs();
   const double h = 0.5 * geometry_.mitre(geometry_.largest(), false).core_height;
@@ -210,7 +210,7 @@ std::vector<Slab> slabs_of(const Stack& stack) {
   std::vector<Slab> slabs;
   std::vector<Duct> ducts = stack.ducts;
   std::sort(ducts.begin(), ducts.end(), [](const Duct& a, const Duct& b) { return a.place < b.place; });
-  double drawn = 0.0, steel = 0.0; // depth with and without ducts
+  double drawn = 0.0, steel = 0.0; // depth with ducts, depth without ducts, m
   std::size_t next = 0;
   for (std::size_t i = 0; i < stack.packets.size(); ++i) {
     const Packet& p = stack.packets[i];
@@ -227,7 +227,7 @@ std::vector<Slab> slabs_of(const Stack& stack) {
   return slabs;
 }
 
-// Finds the centre by ternary search, because the largest distance to a corner is a convex function of it.
+// Returns the circle, by ternary search for its centre: the largest distance to a corner is a convex function of the centre.
 Round round_about(const std::vector<Slab>& slabs) {
   const auto farthest = [&](double centre) {
     double most = 0.0;
@@ -261,7 +261,8 @@ void Drawing::draw_packets(SheetPanel& panel) const {
   panel.labels_at_right(std::move(labels), panel.frame().x + panel.frame().width - 148.0);
 }
 
-// Draws the section of a limb, seen along it: packets from the front face (below) to the back, in their smallest enclosing circle.
+// Draws the section of a limb in the direction of its axis: packets from the front face (below) to the back, in their smallest enclosing
+// circle.
 void Drawing::draw_section() {
   const Stack& stack = geometry_.stack();
   const double depth = depth_of(stack);
@@ -295,12 +296,12 @@ void Drawing::draw_corner(const PanelFrame& frame) {
   SheetPanel panel(out_, frame, is_middle ? "Corner: T-joint of the largest packet" : "Corner: mitre of the largest packet",
                    {-1.35 * half, low}, {1.1 * half, top}, {34.0, 70.0, 34.0, 62.0});
   panel.rectangle(-1.35 * half, is_middle ? 1.1 * half : half, top - m.yoke_height, top, "yoke");
-  CornerFrame floor; // cuts off the limb at the lower edge
+  CornerFrame floor; // frame of the line that cuts off the limb at the lower edge
   floor.origin = {0.0, low};
   floor.across = {0.0, 1.0};
   panel.polygon(beyond(is_middle ? pointed_end(m, 1.0, 0.0) : limb_end(m, 1.0, 1.0, 0.0), floor, 0.0), "limb");
   const auto draw_line = [&](double q) {
-    // Points where the line crosses both strips: the edge of the yoke's sheet.
+    // The edge of the yoke's sheet ends at the points where the line crosses both strips.
     for (const double side : {1.0, -1.0}) {
       if (!is_middle && side < 0.0) continue;
       const CornerFrame f = is_middle ? notch_frame(m, side, 1.0) : corner_frame(m, 1.0, 1.0);

@@ -20,7 +20,8 @@ namespace steplap {
 namespace {
 
 constexpr double k_usual_notch = 45.0 * std::numbers::pi / 180.0;
-constexpr double k_strip_tongue = 0.05, k_strip_margin = 0.02; // m, defaults for strips; significant only after large slides
+// Default dimensions of strips, m; they have an effect only after large slides.
+constexpr double k_strip_tongue = 0.05, k_strip_margin = 0.02;
 constexpr long k_hole_sides = 24;
 
 // Position of a circle relative to a convex ring.
@@ -58,7 +59,7 @@ struct Moments {
 
 struct CoreGeometry::End {
   bool is_middle = false;
-  double side = 1.0, level = 1.0, reach = 0.0; ///< side: for a middle limb the side of its axis
+  double side = 1.0, level = 1.0, reach = 0.0; ///< signs of the end; for a middle limb `side` is the side of its axis
 };
 
 Stack stack_of(const Core& core) {
@@ -140,7 +141,7 @@ CornerFrame CoreGeometry::frame(std::size_t packet, const End& end) const {
   return end.is_middle ? notch_frame(m, -end.side, end.level) : corner_frame(m, end.side, end.level);
 }
 
-// Returns the sheet without its bolt holes.
+// Cuts the bolt holes out of the outline of a sheet. `levels`: ends at which the sheet has holes, +1 top, −1 bottom.
 Polygon CoreGeometry::punched(const std::vector<Vec2>& ring, double side, std::initializer_list<double> levels) const {
   Polygon sheet{ring, {}};
   if (core_.bolt_holes.empty() || ring.size() < 3) return sheet;
@@ -215,10 +216,10 @@ std::string CoreGeometry::zone_name(std::size_t packet, std::size_t zone) const 
   return name;
 }
 
-// For two layers, the yoke sheet of either may overlap the limb sheet of the other.
+// Adds the overlaps of two neighbouring layers: the yoke sheet of each may overlap the limb sheet of the other.
 void CoreGeometry::add_built(const End& end, std::vector<Lap>& laps) const {
   const double half_gap = 0.5 * stack_.book.clearance;
-  std::map<std::array<std::size_t, 3>, long> number; // counter for each zone and pair of packets
+  std::map<std::array<std::size_t, 3>, long> number; // number of laps so far, for each zone and pair of packets
   const auto add = [&](const LayerShape& yoke, const LayerShape& limb, const LayerPair& pair) {
     const double inner = line(limb, end.is_middle) + half_gap, outer = line(yoke, end.is_middle) - half_gap;
     const bool is_one_packet = yoke.packet == limb.packet;
@@ -247,14 +248,14 @@ void CoreGeometry::add_built(const End& end, std::vector<Lap>& laps) const {
     if (!(pair.a == pair.b)) add(pair.b, pair.a, pair);
   }
   if (core_.bands == "each") return;
-  std::set<std::pair<std::size_t, std::size_t>> kinds; // packet, zone
+  std::set<std::pair<std::size_t, std::size_t>> kinds; // pairs (packet, zone)
   for (const Lap& lap : laps)
     if (!lap.is_between) kinds.insert({lap.packet, lap.zone});
   for (const auto& [packet, zone] : kinds) merge(end, packet, zone, laps);
 }
 
-// Replaces the laps of one packet by one with their mean area about the middle of the mitre. Its width is found by the secant method, since
-// the area is nearly proportional to it.
+// Replaces the laps of one packet and zone by one lap with their mean area about the middle of the mitre. The secant method determines its
+// width, because the area is nearly proportional to it.
 void CoreGeometry::merge(const End& end, std::size_t packet, std::size_t zone, std::vector<Lap>& laps) const {
   const auto is_own = [&](const Lap& lap) { return !lap.is_between && lap.packet == packet && lap.zone == zone; };
   double count = 0.0, area = 0.0, width = 0.0, before = 0.0;
@@ -266,7 +267,7 @@ void CoreGeometry::merge(const End& end, std::size_t packet, std::size_t zone, s
     count += lap.count;
     area += lap.count * lap.area;
     width += lap.count * (lap.outer - lap.inner);
-    before += lap.count * lap.area * lap.before; // weighted like the pressures
+    before += lap.count * lap.area * lap.before; // weighted by area, like the pressures
   }
   if (!(area > 0.0)) return;
   std::erase_if(laps, is_own);
@@ -277,7 +278,7 @@ void CoreGeometry::merge(const End& end, std::size_t packet, std::size_t zone, s
   for (int i = 0; i < 20 && mean.area != target && mean.area != area_before; ++i) {
     const double next = w + (target - mean.area) * (w - w_before) / (mean.area - area_before);
     Lap better = of_width(next);
-    if (!(std::abs(better.area - target) < std::abs(mean.area - target))) break; // only rounding is left
+    if (!(std::abs(better.area - target) < std::abs(mean.area - target))) break; // no further improvement: rounding
     w_before = w;
     area_before = mean.area;
     w = next;
@@ -386,9 +387,9 @@ double CoreGeometry::yoke_cut(const LimbPlace& limb) const {
   return mass;
 }
 
-// For an acceleration a from the front face to the back, the contact forces increase with the number of sheets pushed from the front. If
-// only the front face is held (and a constant force acts on the back), an interface is loaded additionally by the mass behind it; if only
-// the back is held, it is relieved by the mass in front of it; if both are held equally, the mean applies.
+// For an acceleration a from the front face to the back, the contact forces increase with the number of sheets that are pushed from the
+// front. If only the front face is supported (and a constant force acts on the back), an interface is additionally loaded by the mass
+// behind it; if only the back is supported, it is relieved by the mass in front of it; if both are supported equally, the mean applies.
 LapPressure CoreGeometry::pressure(const CoreCorner& corner, const Lap& lap, double share) const {
   const double level = corner.is_top ? core_.pressure : core_.bottom_pressure.value_or(core_.pressure);
   const std::optional<Vec2>& given =

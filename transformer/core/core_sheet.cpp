@@ -11,10 +11,10 @@ namespace {
 
 constexpr double k_arrow = 7.0;  // arrow length of dimension lines, pixels
 constexpr double k_letter = 6.8; // mean width of a character at a font size of 12 pixels
-constexpr double k_row = 14.0;   // line distance of labels
+constexpr double k_row = 14.0;   // distance between lines of labels, pixels
 
 double width_of(const std::string& words) {
-  // Continuation bytes of UTF-8 have no width.
+  // Only the first byte of a UTF-8 character has a width.
   return k_letter * static_cast<double>(std::count_if(words.begin(), words.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
@@ -97,7 +97,7 @@ void SheetPanel::dimension_across(const Vec2& a, const Vec2& b, double off, cons
   if (p.x() > q.x()) std::swap(p, q);
   const double y = off > 0.0 ? std::max(p.y(), q.y()) + off : std::min(p.y(), q.y()) + off, beyond = off > 0.0 ? 4.0 : -4.0;
   for (const Vec2& end : {p, q}) line_between({end.x(), end.y() + 0.5 * beyond}, {end.x(), y + beyond}, "extension");
-  // Short dimension lines have their arrows outside and the figure behind them.
+  // Short dimension lines have their arrows outside, and the figure next to the arrow.
   const bool is_short = q.x() - p.x() < width_of(words) + 2.0 * k_arrow;
   const double out = is_short ? 2.0 * k_arrow : 0.0;
   line_between({p.x() - out, y}, {q.x() + out, y}, "dimension");
@@ -138,7 +138,7 @@ void SheetPanel::labels_at_right(std::vector<Label> labels, double x) {
     for (std::size_t i = 0; i < room; ++i) fewer.push_back(labels[i * (labels.size() - 1) / std::max<std::size_t>(1, room - 1)]);
     labels = std::move(fewer);
   }
-  // First from above: each label as near to its point as the previous one permits. Then upwards from the lower edge.
+  // First pass from above: each label as near to its point as the previous label permits. Second pass from the lower edge upwards.
   std::vector<double> rows;
   for (const Label& label : labels) rows.push_back(std::max(at(label.place).y(), rows.empty() ? top : rows.back() + k_row));
   for (std::size_t i = rows.size(); i-- > 0;) rows[i] = std::min(rows[i], i + 1 < rows.size() ? rows[i + 1] - k_row : bottom);

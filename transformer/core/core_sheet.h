@@ -43,17 +43,17 @@ public:
   /// Returns the panel's rectangle in the image.
   [[nodiscard]] const PanelFrame& frame() const { return frame_; }
 
-  /// Draws a closed polygon. `kind` is a style class, here and below.
+  /// Draws a closed polygon. In all drawing functions `kind` is a style class.
   void polygon(const std::vector<Vec2>& ring, const std::string& kind);
-  /// Draws an axis-parallel rectangle, m.
+  /// Draws an axis-parallel rectangle, corners in m.
   void rectangle(double x0, double x1, double y0, double y1, const std::string& kind);
-  /// Draws a straight line, m.
+  /// Draws a straight line, end points in m.
   void line(const Vec2& a, const Vec2& b, const std::string& kind);
-  /// Draws a circle given by its diameter, m.
+  /// Draws a circle with centre and diameter in m.
   void circle(const Vec2& centre, double diameter, const std::string& kind);
   /// Writes text at a point, shifted downwards by `down` pixels.
   void text(const Vec2& place, const std::string& words, const std::string& anchor = "middle", double down = 4.0);
-  /// Writes one line of text along the lower edge of the frame and, if given, one along the upper edge.
+  /// Writes one line of text along the lower edge of the frame and, if `above` is given, one along the upper edge.
   void note(const std::string& below, const std::string& above = "");
 
   /// Draws a horizontal dimension line from a to b with arrows, `off` pixels below the lower of both points (above if negative).
@@ -61,10 +61,10 @@ public:
   /// Draws a vertical dimension line from a (lower) to b (upper), `off` pixels to the right of the right one (to the left if negative).
   void dimension_upwards(const Vec2& a, const Vec2& b, double off, const std::string& words);
 
-  /// Label at the right edge with a leader line to its point.
+  /// Label at the right edge, with a leader line to its point.
   struct Label {
-    Vec2 place;        ///< m
-    std::string words; ///< the text
+    Vec2 place;        ///< point, m
+    std::string words; ///< text of the label
   };
   /// Writes the labels in the order of their points, without overlap. If there is not enough room, an evenly spaced selection is written.
   void labels_at_right(std::vector<Label> labels, double x);

@@ -10,7 +10,7 @@ namespace steplap {
 
 namespace {
 
-// A limb relative to the active part's centre of gravity, in its axes. Heights are those of the adjacent window.
+// A limb relative to the active part's centre of gravity, in its axes, m. `low` and `high` are the bottom and top of the adjacent window.
 struct Standing {
   double x, half_width, low, high;
 };
@@ -51,7 +51,7 @@ std::vector<std::vector<Vec2>> core_windows(const Body& active_part, const Model
     const Vec2 low(a.x + a.half_width, std::max(a.low, b.low)), high(b.x - b.half_width, std::min(a.high, b.high));
     if (!(high.x() > low.x()) || !(high.y() > low.y())) continue;
     const std::vector<Vec2> ring{low, {high.x(), low.y()}, high, {low.x(), high.y()}};
-    // The corners are moved inwards by 0.001, because the window's edge may coincide with the outline.
+    // The corners are moved inwards by a thousandth, because the window's edge may coincide with the outline.
     const Vec2 middle = 0.5 * (low + high);
     const bool is_covered = std::all_of(ring.begin(), ring.end(), [&](const Vec2& p) {
       return is_inside(middle + 0.999 * (p - middle) + active_part.cg, active_part.outline);

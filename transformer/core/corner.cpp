@@ -88,14 +88,14 @@ std::vector<Vec2> yoke_end(const Mitre& m, double side, double level, double q, 
   return before(strip, corner_frame(m, side, level), q);
 }
 
-// The mitre that rises towards −side begins at the corner of the window on this side.
+// The mitre that rises towards −side begins at the window's corner on side `side`.
 std::vector<Vec2> yoke_half(const Mitre& m, double side, double level, double q, double reach) {
   const double top = 0.5 * level * m.core_height;
   const auto strip = rectangle(0.0, side * reach, top - level * m.yoke_height, top);
   return before(strip, notch_frame(m, -side, level), q);
 }
 
-// Distance to the nearer of the two corners of the rectangle that are not on the mitre.
+// Returns the distance of the mitre to the nearer of the two corners of the rectangle that are not on it, m.
 double least_shift(const Mitre& m) {
   const CornerFrame f = corner_frame(m, 1.0, 1.0);
   const Vec2 below(m.limb_width, 0.0), above(0.0, m.yoke_height);

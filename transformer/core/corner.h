@@ -22,15 +22,15 @@ namespace steplap {
 
 /// Dimensions of limb and yoke at a corner.
 struct Mitre {
-  double limb_width = 0.0, core_height = 0.0, yoke_height = 0.0; ///< m
-  std::optional<double> angle;                                   ///< relative to the yoke, rad; not given: from corner to corner
+  double limb_width = 0.0, core_height = 0.0, yoke_height = 0.0; ///< dimensions, m
+  std::optional<double> angle; ///< angle of the mitre relative to the yoke, rad; not given: from corner to corner
 };
 
 /// Position and directions of one mitre, in axes with the origin in the middle of the limb, m.
 struct CornerFrame {
   Vec2 origin = Vec2::Zero(); ///< corner of the window
-  Vec2 along = Vec2::Zero();  ///< t
-  Vec2 across = Vec2::Zero(); ///< n, away from the yoke
+  Vec2 along = Vec2::Zero();  ///< unit vector t along the mitre, outwards
+  Vec2 across = Vec2::Zero(); ///< unit vector n across the mitre, away from the yoke
   double length = 0.0;        ///< length of the mitre, m
 };
 
@@ -43,17 +43,17 @@ struct CornerFrame {
 /// Returns the four corners of the rectangle s₀…s₁ along × q₀…q₁ across the mitre.
 [[nodiscard]] std::vector<Vec2> band(const CornerFrame& frame, double s0, double s1, double q0, double q1);
 
-/// Return the part of a convex ring beyond the line at q across the mitre, or before it.
+/// Return the part of a convex ring beyond the line at q (parallel to the mitre), or the part before it.
 [[nodiscard]] std::vector<Vec2> beyond(const std::vector<Vec2>& ring, const CornerFrame& frame, double q);
 [[nodiscard]] std::vector<Vec2> before(const std::vector<Vec2>& ring, const CornerFrame& frame, double q);
 
-/// Returns the end of a limb from half its height on, cut at q; empty if nothing is left.
+/// Returns the end of a limb, from half its height on, cut at q; empty if nothing is left.
 [[nodiscard]] std::vector<Vec2> limb_end(const Mitre& mitre, double side, double level, double q);
-/// The same for a middle limb, which ends in a point.
+/// Returns the end of a middle limb, which ends in a point, cut at q; empty if nothing is left.
 [[nodiscard]] std::vector<Vec2> pointed_end(const Mitre& mitre, double level, double q);
 /// Returns the whole limb with both ends cut at q.
 [[nodiscard]] std::vector<Vec2> whole_limb(const Mitre& mitre, double side, double q);
-/// The same for a middle limb.
+/// Returns the whole middle limb with both ends cut at q.
 [[nodiscard]] std::vector<Vec2> whole_pointed_limb(const Mitre& mitre, double q);
 
 /// Returns the end of the yoke at an outer limb, up to `reach` from the limb's axis towards the active part.

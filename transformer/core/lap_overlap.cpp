@@ -39,7 +39,7 @@ void compute_overlap(Lap& lap) {
   for (const Polygon& piece : region) lap.overlap.insert(lap.overlap.end(), piece.outer.begin(), piece.outer.end());
 }
 
-/// A cached lap.
+/// A lap with its overlap, in the cache.
 struct CachedLap {
   Polygon yoke, limb;
   double area = 0.0;
@@ -50,7 +50,7 @@ struct CachedLap {
 } // namespace
 
 void find_overlap(Lap& lap) {
-  constexpr std::size_t k_most = 4096; // a core with thirty packets has some hundreds
+  constexpr std::size_t k_most = 4096; // largest number of cached laps; a core with thirty packets has some hundreds
   static thread_local std::unordered_map<std::uint64_t, CachedLap> all_known;
   if (lap.yoke.outer.size() < 3 || lap.limb.outer.size() < 3) return;
   Fingerprint print;

@@ -1,5 +1,4 @@
-// Overlaps of the two sheets of a lap, cached. A study builds the same core for each sample with other pressures and friction, so recently
-// computed overlaps are kept.
+// Overlaps of the two sheets of a lap, with a cache: a study builds the same core for each sample, with other pressures and friction.
 #pragma once
 
 #include "transformer/core/core_geometry.h"

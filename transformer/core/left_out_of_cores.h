@@ -1,4 +1,4 @@
-// Lists the effects on a core that a planar model of rigid bodies cannot contain. They are shown with every verdict on a core.
+// Lists the effects on a core that a planar model of rigid bodies cannot contain. Every verdict on a core shows them.
 #pragma once
 
 #include "mbd/model/model.h"

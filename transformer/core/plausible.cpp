@@ -17,14 +17,15 @@ namespace steplap {
 
 namespace {
 
-// Given masses may be somewhat below the computed ones (stacking factor, cropped corners) or above (tie plates, bindings).
+// Usual range of the ratio of given to computed masses (k_light, k_heavy) and moments of inertia (k_small, k_large). Given values may be
+// lower (stacking factor, cropped corners) or higher (tie plates, bindings).
 constexpr double k_light = 0.98, k_heavy = 1.10, k_small = 0.95, k_large = 1.15;
-constexpr double k_off_centre = 10e-3; // m: largest usual distance of a given centre of gravity from that of the sheets
+constexpr double k_off_centre = 10e-3; // largest usual distance of a given centre of gravity from that of the sheets, m
 
 const char* const k_assumed = "assumed: nothing published was found";
 
-constexpr double k_shop_mitre = 0.25 * std::numbers::pi;         // usual in workshops
-constexpr double k_same_angle = 0.05 * std::numbers::pi / 180.0; // angles are given to a tenth of a degree
+constexpr double k_shop_mitre = 0.25 * std::numbers::pi;         // usual mitre angle in workshops, rad
+constexpr double k_same_angle = 0.05 * std::numbers::pi / 180.0; // tolerance of angles, rad, which are given to a tenth of a degree
 
 std::string degrees_text(double angle) { return number_text(std::round(angle * 1800.0 / std::numbers::pi) / 10.0) + "°"; }
 
@@ -111,7 +112,7 @@ private:
                              " m wide is unusual: sections are about as deep as wide, 0.4 to 1.8 of it (" + k_assumed + ")");
   }
 
-  // The angle of a mitre from corner to corner follows from the dimensions; reports it if it is not the angle that workshops cut.
+  // Reports a mitre angle that follows from the dimensions (corner to corner) and is not the angle that workshops cut.
   void note_mitre() {
     if (core_.mitre_angle || core_.limbs.empty()) return;
     const CoreGeometry geometry(core_);

@@ -1,4 +1,4 @@
-// Remarks on cores with unusual values. Values outside the usual range are allowed. Ranges are those of power transformers' cores; each
+// Remarks on cores with unusual values. Values outside the usual range are permitted. Ranges are those of power transformers' cores; each
 // names its source, or states that nothing is published.
 #pragma once
 
@@ -12,8 +12,8 @@ namespace steplap {
 /// Usual range of a field of [[core]].
 struct UsualRange {
   const char* field;
-  double low, high; ///< SI
-  const char* text; ///< "0.18 mm to 0.35 mm"
+  double low, high; ///< limits of the range, SI
+  const char* text; ///< text of the range: "0.18 mm to 0.35 mm"
   const char* source;
 };
 
@@ -23,12 +23,12 @@ struct UsualRange {
 struct CoreRemark {
   Location where;   ///< location of the field if given, otherwise of the table
   std::string text; ///< text without location
-  /// The value may well be intended; the remark is for information only.
+  /// true: the value may well be intended, so the remark is only information
   bool is_note = false;
 };
 
 /// Returns the remarks for a completed model. Each names the value, the usual range and its source. Masses that disagree with the sheets
-/// are remarked, too. A mitre angle that was not given and is not 45° is a note.
+/// are included. A mitre angle that was not given and is not 45° is a note.
 [[nodiscard]] std::vector<CoreRemark> implausible_cores(const Model& model);
 
 } // namespace steplap

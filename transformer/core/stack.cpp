@@ -10,7 +10,7 @@ namespace steplap {
 
 namespace {
 
-// Tolerance, so that a depth that is a whole number of sheets does not lose one by rounding.
+// Tolerance, so that rounding does not reduce a depth that is a whole number of sheets by one.
 constexpr double k_rounded_sheets = 1e-9;
 
 // Returns how many of the numbers 0 … n−1 leave the remainder `rest` when divided by `period`.
@@ -33,7 +33,7 @@ public:
     return pairs;
   }
 
-  // Counts interface by interface.
+  // Counts the pairs of a stack by place, interface by interface.
   std::vector<LayerPair> count_by_place() {
     std::set<long> gaps;
     for (const Duct& duct : stack_.ducts) gaps.insert(sheets_before(stack_, duct));
@@ -42,8 +42,8 @@ public:
     const auto add = [&](std::size_t zone, const Shapes& shapes) {
       if (gaps.count(before) > 0) return;
       LayerPair& pair = found.try_emplace({zone, shapes}, LayerPair{shapes.first, shapes.second, 0, zone, 0.0}).first->second;
-      pair.before += static_cast<double>(before); // sum; divided by the count at the end
-      if (pair.count == 0) pair.first = before;   // pairs are visited from front to back
+      pair.before += static_cast<double>(before); // sum over the interfaces, divided by their count at the end
+      if (pair.count == 0) pair.first = before;   // set by the first interface, since pairs are visited from front to back
       pair.last = before;
       ++pair.count;
     };
@@ -80,11 +80,11 @@ private:
     for (long i = 0; i < std::min(pairs, period); ++i) counts_[ordered(shape(p, i), shape(p, i + 1))] += count_of(pairs, i, period);
   }
 
-  // Precondition: both packets have sheets; the core refuses empty ones.
+  // Returns the pair of layers where packet p meets the next. Precondition: both packets have sheets.
   [[nodiscard]] Shapes seam(std::size_t p) const { return ordered(shape(p, layers_in(stack_, stack_.packets[p]) - 1), shape(p + 1, 0)); }
   void count_between(std::size_t p) { ++counts_[seam(p)]; }
 
-  // Removes the pair separated by a duct after this number of sheets, if the duct is between two layers.
+  // Removes the pair that a duct after `gap` sheets separates, if the duct is between two layers.
   void part(long gap) {
     for (std::size_t p = 0; p < stack_.packets.size(); ++p) {
       const long sheets = sheets_in(stack_, stack_.packets[p]);

@@ -18,13 +18,13 @@ struct Packet {
   double width = 0.0;       ///< width of the limb sheets, m
   double yoke_height = 0.0; ///< height of the yoke, m
   double depth = 0.0;       ///< depth of steel and insulation, m
-  double pressure = 1.0;    ///< relative to the clamping pressure of the corner
+  double pressure = 1.0;    ///< pressure relative to the clamping pressure of the corner
 };
 
 /// Cooling duct in the stack.
 struct Duct {
-  double place = 0.0; ///< m
-  double width = 0.0; ///< m
+  double place = 0.0; ///< position from the front face, not counting ducts, m
+  double width = 0.0; ///< width, m
 };
 
 /// The sheets of a core from front to back.
@@ -34,8 +34,8 @@ struct Stack {
   double sheet_thickness = 0.0; ///< thickness of the steel, m
   std::vector<Duct> ducts;
   Book book;
-  /// True: equal interfaces in different packets, and in different slices of a packet, are counted separately, for pressures that depend on
-  /// the position in the stack.
+  /// True: equal interfaces in different packets, and in different slices of a packet, are counted separately, because their pressures
+  /// depend on the position in the stack.
   bool is_by_place = false;
   long slices = 1;
 };
@@ -50,12 +50,12 @@ struct LayerShape {
   friend bool operator==(const LayerShape& a, const LayerShape& b) { return a.packet == b.packet && a.position == b.position; }
 };
 
-/// Two neighbouring layers with `a` not after `b`; their order in the stack does not matter.
+/// Two neighbouring layers, with `a` not after `b` in the order of LayerShape; their order in the stack is irrelevant.
 struct LayerPair {
   LayerShape a, b;
   long count = 0;           ///< number of occurrences in the stack
   std::size_t zone = 0;     ///< in a stack by place: packet · slices + slice
-  double before = 0.0;      ///< in a stack by place: mean number of sheets in front of it
+  double before = 0.0;      ///< in a stack by place: mean number of sheets in front of the pair
   long first = 0, last = 0; ///< in a stack by place: number of sheets in front of the first and the last such pair
 };
 
@@ -68,14 +68,14 @@ struct LayerCount {
 /// Return the number of sheets in a packet, or in the whole stack.
 [[nodiscard]] long sheets_in(const Stack& stack, const Packet& packet);
 [[nodiscard]] long sheets_in(const Stack& stack);
-/// Returns the number of layers. The last layer of a packet may be incomplete.
+/// Returns the number of layers in a packet, or in the whole stack. The last layer of a packet may be incomplete.
 [[nodiscard]] long layers_in(const Stack& stack, const Packet& packet);
 [[nodiscard]] long layers_in(const Stack& stack);
 /// Returns the number of sheets in front of a duct.
 [[nodiscard]] long sheets_before(const Stack& stack, const Duct& duct);
 /// Returns the depth of steel, insulation and ducts, m.
 [[nodiscard]] double depth_of(const Stack& stack);
-/// Returns the first packet with the same width, yoke height and pressure.
+/// Returns the index of the first packet with the same width, yoke height and pressure.
 [[nodiscard]] std::size_t likeness(const Stack& stack, std::size_t packet);
 
 /// Returns all kinds of pairs of neighbouring layers with their number (in a stack by place once for each zone), those within a packet

@@ -1,4 +1,4 @@
-// Reads tables of the files that belong to a decision, with all their problems.
+// Reads tables of the files that belong to a decision, and collects all their problems.
 #pragma once
 
 #include "mbd/io/field_reader.h"

@@ -13,7 +13,7 @@ namespace steplap::assess {
 
 namespace {
 
-/// A quantity for criteria, the unit of its limit, whether it takes 'at_most', 'at_least' or no limit, and where it comes from.
+/// A quantity for criteria: the unit of its limit, whether it takes 'at_most', 'at_least' or no limit, and its basis.
 struct CriterionQuantity {
   const char* name;
   const char* unit;

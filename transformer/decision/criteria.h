@@ -1,4 +1,4 @@
-// Acceptance criteria for a machine after transport: a TOML file by the user, or one of the presets.
+// Acceptance criteria for a machine after transport: a TOML file of the user, or one of the presets.
 //
 //   name = "…"  text = "…"  source = "…"  tests = ["dew point of the gas"]
 //   [[criterion]]
@@ -22,18 +22,19 @@ enum class Decision { energise, open, inspect, send_back };
 /// Returns "energise", "open", "inspect" or "return".
 [[nodiscard]] const char* name_of(Decision decision);
 
-/// Where the quantity of a criterion comes from: the recorder's reading, the runs of the voyage, or their repetition with uncertain values.
+/// Origin of the quantity of a criterion: the recorder's reading, the runs of the voyage, or the repetition of the runs with uncertain
+/// values.
 enum class CriterionBasis { reading, runs, probability };
 
 /// One criterion.
 struct DecisionCriterion {
   std::string name, quantity;
-  CriterionBasis basis = CriterionBasis::runs; ///< of `quantity`
+  CriterionBasis basis = CriterionBasis::runs; ///< origin of `quantity`
   std::string axis = "any";                    ///< axis of the record: "any", "x", "y" or "z"
   std::string bandwidth = "record";            ///< for a peak: "record", "100 Hz" (CFC 60) or "17 Hz" (CFC 10)
   std::string at_most_text, at_least_text;
-  std::optional<double> at_most, at_least; ///< SI
-  std::string outcome = "inspect";         ///< outcome if it is not met: "inspect" or "return"
+  std::optional<double> at_most, at_least; ///< limits, SI
+  std::string outcome = "inspect";         ///< outcome if the criterion is not met: "inspect" or "return"
   std::string text, source;
   std::vector<std::string> tests; ///< tests that would reveal the damage
   Location where;
@@ -42,13 +43,13 @@ struct DecisionCriterion {
 /// A set of criteria.
 struct DecisionCriteria {
   std::string name, text, source;
-  std::vector<std::string> tests; ///< usual tests on arrival, whatever the decision
+  std::vector<std::string> tests; ///< usual tests on arrival, carried out with any decision
   std::string file;               ///< file name, or name of the preset
-  std::string toml;               ///< source text
+  std::string toml;               ///< text of the file or preset
   std::vector<DecisionCriterion> criteria;
 };
 
-/// Reads a file, or a preset by its name. Throws ModelError with all errors, FileError if there is neither.
+/// Reads a file, or a preset by its name. Throws ModelError with all errors, FileError if neither exists.
 [[nodiscard]] DecisionCriteria read_criteria(const std::string& file_or_preset);
 /// As read_criteria(), for a text in memory.
 [[nodiscard]] DecisionCriteria parse_criteria(const std::string& text, const std::string& file_name);

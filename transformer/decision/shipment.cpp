@@ -35,7 +35,7 @@ FieldTable handover_fields() {
   return t;
 }
 
-// Reads all tables [[name]].
+// Reads all tables [[name]] of a document and appends them to `all`.
 template <class T>
 void read_array(const Document& document, const std::string& name, const FieldTable& fields, std::vector<T>& all,
                 std::vector<Diagnostic>& problems) {

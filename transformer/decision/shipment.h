@@ -1,4 +1,4 @@
-// Papers of a transport: a TOML file by the user with entries that are printed on the sheet to be signed. All of it is optional.
+// Papers of a transport: a TOML file of the user with entries that are printed on the sheet to be signed. All entries are optional.
 //
 //   transformer = "serial number"  departure = "2016-01-04 10:00"  arrival = "2016-01-06 18:00"
 //   [[recorder]]
@@ -14,7 +14,7 @@
 
 namespace steplap::assess {
 
-/// A recorder that travelled with the machine, as texts for people.
+/// A recorder that travelled with the machine; all values are printed as given.
 struct ShippedRecorder {
   std::string serial, record, calibrated, range, filter, place;
 };
@@ -24,10 +24,10 @@ struct Handover {
   std::string place, time;
 };
 
-/// The papers of a transport. "" or empty: not stated.
+/// The papers of a transport. Empty entries are not stated.
 struct Shipment {
   std::string file;
-  std::string transformer; ///< its serial number
+  std::string transformer; ///< serial number of the transformer
   std::string departure, arrival;
   std::vector<ShippedRecorder> recorders;
   std::vector<Handover> handovers;

@@ -13,7 +13,7 @@ namespace steplap {
 namespace {
 
 constexpr std::size_t k_block = 65536;
-constexpr double k_on_grid = 1e-6; // of a step; times with six digits after the first time step are on the grid
+constexpr double k_on_grid = 1e-6; // tolerance of grid times, relative to a step, for times with six digits after the first time step
 
 } // namespace
 
@@ -34,10 +34,11 @@ void Conditioner::begin(const RecordLayout& layout) {
 }
 
 void Conditioner::set_high_pass(const RecordLayout& layout) {
-  // The gain is 1/√2 at r⁴ = 1/(√2 − 1). The low-pass is specified by its class: f0 = 2.0775 CFC.
+  // The gain of the high-pass is 1/√2 at r⁴ = 1/(√2 − 1). The low-pass is specified by its class: f0 = 2.0775 CFC.
   const double half = *conditioning_.high_pass / std::sqrt(std::sqrt(1.0 / (std::numbers::sqrt2 - 1.0))),
                frequency_class = half / ChannelFilter::k_ratio;
-  constexpr double k_slowest = 1e-5; // of the sampling rate; the memory needed by the filter is inversely proportional to it
+  // Lowest high-pass frequency relative to the sampling rate; the memory of the filter is inversely proportional to this frequency.
+  constexpr double k_slowest = 1e-5;
   if (!(*conditioning_.high_pass >= k_slowest * rate_))
     throw RecordError(layout.file, 0, 0,
                       "A high-pass of " + rounded_text(*conditioning_.high_pass) + " Hz is too low for a record of " + rounded_text(rate_) +
@@ -84,7 +85,7 @@ double Conditioner::slope(std::size_t i, std::size_t axis) const {
   return (w0 + w1) / (w0 / left + w1 / right);
 }
 
-// Interpolates the grid up to the third of four rows; at the end of a segment up to its end.
+// Interpolates samples on the time grid up to the third of four rows; at the end of a segment up to its end.
 void Conditioner::fill(bool is_end) {
   if (rows_.empty()) return;
   const double step = 1.0 / rate_;
@@ -118,7 +119,7 @@ void Conditioner::add(double t, const std::array<double, 3>& a) {
   if (times_.size() >= lead_ + std::max(k_block, margin_) + margin_) flush(false);
 }
 
-// Passes on all samples for which the filter has settled. Keeps as many samples before and after as the filter needs.
+// Passes on all samples for which the filter has settled. Keeps the samples before and after that the filter still needs.
 void Conditioner::flush(bool is_end) {
   const std::size_t size = times_.size(), end = is_end ? size : size - margin_;
   std::array<std::vector<double>, 3> without_drift;

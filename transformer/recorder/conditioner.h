@@ -24,25 +24,25 @@ public:
   virtual ~SignalSink() = default;
   virtual void begin(const RecordLayout& layout, double rate) = 0;
   virtual void begin_segment(std::size_t line) = 0;
-  /// Receives a sample: t in s; m/s² for each axis, before and after the filter (equal if there is no filter).
+  /// Receives a sample: t, s; acceleration of each axis, m/s², before and after the filter (equal without a filter).
   virtual void put(double t, const double* plain, const double* filtered) = 0;
   virtual void end_segment() = 0;
 };
 
 /// Parameters of the conditioning.
 struct Conditioning {
-  std::array<double, 3> offset{};                     ///< m/s², subtracted from the axes
+  std::array<double, 3> offset{};                     ///< offsets that are subtracted from the axes, m/s²
   std::optional<double> frequency_class;              ///< channel frequency class (CFC), Hz; none: no filter
   std::optional<double> rate;                         ///< sampling rate of the result, Hz; none: that of the record
   std::optional<double> high_pass;                    ///< frequency at which the gain of the high-pass is 1/√2, Hz; none: no high-pass
-  std::vector<std::array<double, 3>> segment_offsets; ///< m/s², subtracted from each segment; empty: nothing is subtracted
+  std::vector<std::array<double, 3>> segment_offsets; ///< offsets that are subtracted from each segment, m/s²; empty: none
 };
 
-/// Velocity and displacement that result if the conditioned acceleration of a segment is integrated from rest.
+/// Velocity and displacement from integrating the conditioned acceleration of a segment, starting at rest.
 struct Drift {
   double duration = 0.0;                ///< duration of the longest segment, s
-  std::array<double, 3> velocity{};     ///< at its end, m/s
-  std::array<double, 3> displacement{}; ///< at its end, m
+  std::array<double, 3> velocity{};     ///< velocity at the end of the segment, m/s
+  std::array<double, 3> displacement{}; ///< displacement at the end of the segment, m
 };
 
 /// Receives samples as read and passes the conditioned signal to a sink.
@@ -63,7 +63,8 @@ public:
   /// Returns the number of samples of the result that are interpolated.
   [[nodiscard]] std::size_t interpolated() const { return interpolated_; }
   [[nodiscard]] const Drift& drift() const { return drift_; }
-  /// Returns for each segment its mean acceleration, m/s². If it is subtracted, the velocity at the end equals that at the begin.
+  /// Returns the mean acceleration of each segment, m/s². If it is subtracted, the velocity at the end of the segment equals that at its
+  /// begin.
   [[nodiscard]] const std::vector<std::array<double, 3>>& segment_means() const { return means_; }
 
 private:
@@ -80,13 +81,13 @@ private:
   Conditioning conditioning_;
   SignalSink& sink_;
   void set_high_pass(const RecordLayout& layout);
-  std::optional<ChannelFilter> filter_, low_; ///< `low_`: low-pass whose output the high-pass subtracts
+  std::optional<ChannelFilter> filter_, low_; ///< `low_`: low-pass whose output is subtracted by the high-pass
   std::size_t axes_ = 0, margin_ = 0, lead_ = 0, interpolated_ = 0, segment_ = 0;
   double rate_ = 0.0;
-  std::vector<Row> rows_; ///< samples of the record that interpolation still needs
-  std::size_t next_ = 0;  ///< index on the time grid of the result
+  std::vector<Row> rows_; ///< rows of the record that interpolation still needs
+  std::size_t next_ = 0;  ///< index of the next sample on the time grid of the result
   double start_ = 0.0;
-  std::vector<double> times_; ///< grid times waiting for the filter
+  std::vector<double> times_; ///< grid times of samples that the filter still needs
   std::array<std::vector<double>, 3> plain_, filtered_;
   Drift drift_, now_;
   std::vector<std::array<double, 3>> means_;

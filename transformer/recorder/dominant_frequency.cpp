@@ -12,13 +12,14 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_level = 0.1; // of the largest magnitude; noise below it is no swing
-constexpr double k_large = 0.5; // of the largest magnitude; smaller swings do not count
+constexpr double k_level = 0.1; // level of a swing, relative to the largest magnitude; values below may be noise
+constexpr double k_large = 0.5; // least peak of a swing that counts, relative to the largest magnitude
 
-// Consecutive samples beyond the level on one side of zero. Places are in samples, and lie where the linear signal crosses the level.
+// A swing: consecutive samples beyond the level on one side of zero. Begin and end are in samples, where the linearly interpolated signal
+// crosses the level.
 struct Swing {
   double begin = 0.0, end = 0.0;
-  double peak = 0.0; ///< signed
+  double peak = 0.0; ///< peak with its sign
 };
 
 std::vector<Swing> swings_beyond(double level, std::span<const double> samples) {
@@ -30,7 +31,7 @@ std::vector<Swing> swings_beyond(double level, std::span<const double> samples) 
       ++i;
       continue;
     }
-    // Distance from sample `inside` to the place where the signal crosses the level.
+    // Returns the distance, in samples, from sample `inside` to the crossing of the level.
     const auto crossing = [&](std::size_t inside, std::size_t outside) {
       return (sign * samples[inside] - level) / (sign * (samples[inside] - samples[outside]));
     };
@@ -61,7 +62,7 @@ double dominant_frequency(std::span<const double> samples, double rate) {
   };
   while (first != swings.begin() && continues(*(first - 1), *first)) --first;
   while (last + 1 != swings.end() && continues(*last, *(last + 1))) ++last;
-  // A sine with this peak is below the level for asin(level/peak)/π of its half period at each end of a swing.
+  // Returns the part of a half period at each end of a swing in which a sine with this peak is below the level: asin(level/peak)/π.
   const auto below = [&](const Swing& swing) {
     const double share = level / std::abs(swing.peak);
     return portable::atan2(share, std::sqrt(1.0 - share * share)) / std::numbers::pi;

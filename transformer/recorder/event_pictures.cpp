@@ -12,9 +12,11 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_most = 8, k_points = 600; // events; points per curve, more than the picture is wide
+// Largest number of events; points per curve, more than the width of the picture in pixels.
+constexpr std::size_t k_most = 8, k_points = 600;
 constexpr double k_width = 940.0, k_row = 200.0, k_head = 34.0;
-constexpr std::array<const char*, 3> k_colours = {"#1b6ca8", "#c1440e", "#3c7d3f"}; // also distinguishable without colours, by their dashes
+// Colours of the axes; dashes distinguish the curves without colours.
+constexpr std::array<const char*, 3> k_colours = {"#1b6ca8", "#c1440e", "#3c7d3f"};
 constexpr std::array<const char*, 3> k_dashes = {"", "7 3", "2 3"};
 
 double peak_of(const ShockEvent& event) { return std::abs(event.axes[event.worst].peak); }
@@ -70,7 +72,7 @@ void ticks(std::string& out, const Frame& f) {
   }
 }
 
-// Draws decades for logarithmic scales; the frame contains logarithms.
+// Draws the ticks of logarithmic scales at decades. The values of the frame are logarithms.
 void decades(std::string& out, const Frame& f) {
   line(out, f.left, f.top + f.height, f.left + f.width, f.top + f.height, "#444");
   line(out, f.left, f.top, f.left, f.top + f.height, "#444");
@@ -91,7 +93,8 @@ void EventPictures::add(const ShockEvent& event, const Window& window, const std
   if (drawn_.size() == k_most && peak_of(event) <= peak_of(drawn_.back().event)) return;
   Drawn drawn{event, {}, {}, spectra};
   const std::size_t count = window.times.size(), stride = std::max<std::size_t>(1, (2 * count + k_points - 1) / k_points);
-  for (std::size_t from = 0; from < count; from += stride) // keeps the sample furthest from zero in each interval, so that peaks remain
+  // Keeps the sample furthest from zero in each interval, so that peaks are not lost.
+  for (std::size_t from = 0; from < count; from += stride)
     for (std::size_t i = 0; i < event.axes.size(); ++i) {
       const auto begin = window.filtered[i].begin() + static_cast<std::ptrdiff_t>(from),
                  end = window.filtered[i].begin() + static_cast<std::ptrdiff_t>(std::min(count, from + stride));

@@ -10,22 +10,22 @@
 
 namespace steplap {
 
-/// Collects the eight largest events.
+/// Collects the eight largest events of a record.
 class EventPictures {
 public:
   /// Adds an event. `spectra` has one entry for each axis.
   void add(const ShockEvent& event, const Window& window, const std::vector<std::vector<ShockPoint>>& spectra);
-  /// Returns an SVG image; "" if there are no events. `bandwidth` is that of the signal, Hz.
+  /// Returns an SVG image; "" if there are no events. `bandwidth`: highest frequency of the signal, Hz.
   [[nodiscard]] std::string svg(const RecordLayout& layout, double bandwidth) const;
 
 private:
   struct Drawn {
     ShockEvent event;
-    std::vector<double> times;                 ///< s from the begin of the window
-    std::array<std::vector<double>, 3> values; ///< m/s²
+    std::vector<double> times;                 ///< times from the begin of the window, s
+    std::array<std::vector<double>, 3> values; ///< filtered signal of each axis, m/s²
     std::vector<std::vector<ShockPoint>> spectra;
   };
-  std::vector<Drawn> drawn_; ///< largest first
+  std::vector<Drawn> drawn_; ///< events, largest first
 };
 
 } // namespace steplap

@@ -9,7 +9,7 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_longest = std::size_t{1} << 18U; // samples per window: a minute at 4 kHz
+constexpr std::size_t k_longest = std::size_t{1} << 18U; // largest number of samples of a window: a minute at 4 kHz
 
 std::size_t greatest(std::span<const double> samples) {
   const auto found = std::max_element(samples.begin(), samples.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
@@ -23,7 +23,7 @@ double peak_in_class(const std::vector<double>& samples, double frequency_class,
   return filtered[greatest(filtered)];
 }
 
-// Returns the fraction of the interval between two samples, of which one is above the level, that is above the level.
+// Returns the fraction of the interval between two samples that is above the level; one of them is above, the other below.
 double share_beyond(double inside, double outside, double level) { return std::clamp((inside - level) / (inside - outside), 0.0, 1.0); }
 
 AxisEvent describe_axis(const Window& window, std::size_t axis) {
@@ -37,7 +37,7 @@ AxisEvent describe_axis(const Window& window, std::size_t axis) {
   std::size_t from = at, to = at;
   while (from > 0 && sign * a[from - 1] >= level) --from;
   while (to + 1 < a.size() && sign * a[to + 1] >= level) ++to;
-  // The signal is linear between samples, so the ends of the interval are between two of them.
+  // The signal is linear between samples, so the interval above the level ends between two of them.
   const double lead = from > 0 ? share_beyond(sign * a[from], sign * a[from - 1], level) : 0.0;
   const double tail = to + 1 < a.size() ? share_beyond(sign * a[to], sign * a[to + 1], level) : 0.0;
   event.duration = (static_cast<double>(to - from) + lead + tail) * step;
@@ -89,7 +89,7 @@ void ShockFinder::forget_all_but(std::size_t kept) {
 }
 
 void ShockFinder::put(double t, const double* plain, const double* filtered) {
-  if (!is_inside_ && window_.times.size() >= kept_ + 4096) forget_all_but(kept_); // rarely, so that the cost is negligible
+  if (!is_inside_ && window_.times.size() >= kept_ + 4096) forget_all_but(kept_); // in blocks, so that the cost is negligible
   window_.times.push_back(t);
   bool is_stirred = false;
   for (std::size_t i = 0; i < axes_; ++i) {
@@ -112,7 +112,7 @@ void ShockFinder::put(double t, const double* plain, const double* filtered) {
   } else if (window_.times.size() >= k_longest) {
     if (is_event_) return close(true);
     forget_all_but(k_longest / 2);
-    used_ = stirred_ = window_.times.size(); // above the release level for long without an event; a later event begins here
+    used_ = stirred_ = window_.times.size(); // long above the release level without an event: an event later on begins here
     window_.lead = kept_;
   }
 }
@@ -136,7 +136,7 @@ void ShockFinder::close(bool goes_on) {
   event.goes_on = goes_on;
   found_(event, window);
   is_inside_ = is_event_ = false;
-  forget_all_but(goes_on ? 0 : window_.times.size() - used_); // no sample is part of two events
+  forget_all_but(goes_on ? 0 : window_.times.size() - used_); // a sample belongs to one event only
 }
 
 void ShockFinder::end_segment() {

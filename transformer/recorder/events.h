@@ -1,4 +1,4 @@
-// Finds shocks in a signal, that is, intervals above a threshold with some time before and after, and computes their characteristics.
+// Finds shocks in a signal: intervals above a threshold, with some time before and after. Computes their characteristics.
 #pragma once
 
 #include "transformer/recorder/conditioner.h"
@@ -14,42 +14,40 @@ namespace steplap {
 
 /// Rules by which events are found.
 struct EventRules {
-  double threshold = k_default_threshold;    ///< m/s², for the filtered signal on any axis
+  double threshold = k_default_threshold;    ///< threshold for the filtered signal on any axis, m/s²
   double before = 0.1, after = 0.3;          ///< time kept before the first and after the last sample above the threshold, s
-  double merge = 0.3;                        ///< s; a new exceedance within this time belongs to the same event
+  double merge = 0.3;                        ///< time, s, within which a new exceedance belongs to the same event
   std::optional<std::array<double, 3>> each; ///< thresholds of single axes, m/s²; none: `threshold` for all
-  double release = 1.0;                      ///< fraction of its threshold below which each axis must be before an event begins and after
-                                             ///< it ends
+  double release = 1.0; ///< fraction of its threshold below which each axis must be before an event begins and after it ends
   static constexpr double k_default_threshold = 9.80665;
 };
 
 /// An interval of the signal with equidistant samples.
 struct Window {
-  double rate = 0.0;                                  ///< Hz
-  std::vector<double> times;                          ///< s
-  std::array<std::vector<double>, 3> plain, filtered; ///< m/s²
-  std::size_t lead = 0, tail = 0;                     ///< number of samples at its begin and end below the release level; 0 where the
-                                                      ///< window was cut
+  double rate = 0.0;                                  ///< sampling rate, Hz
+  std::vector<double> times;                          ///< times of the samples, s
+  std::array<std::vector<double>, 3> plain, filtered; ///< acceleration before and after the filter, m/s²
+  std::size_t lead = 0, tail = 0; ///< number of samples below the release level at the begin and at the end; 0 where the window was cut
 };
 
 /// One axis of an event. Values refer to the filtered signal, except the two peaks with given frequency class.
 struct AxisEvent {
-  double peak = 0.0, peak_time = 0.0;                         ///< m/s², signed; s
-  double duration = 0.0;                                      ///< duration around the peak above a tenth of it, s
-  double velocity_change = 0.0;                               ///< integral of acceleration over this duration, m/s
-  double frequency = 0.0;                                     ///< of the swings around the peak, Hz (dominant_frequency.h)
-  double at_cfc60 = std::numeric_limits<double>::quiet_NaN(); ///< peak with CFC 60 (up to 100 Hz), m/s²; NaN if the sampling rate is too
-                                                              ///< low
+  double peak = 0.0, peak_time = 0.0; ///< largest magnitude with its sign, m/s²; its time, s
+  double duration = 0.0;              ///< duration of the interval around the peak above a tenth of it, s
+  double velocity_change = 0.0;       ///< integral of the acceleration over that interval, m/s
+  double frequency = 0.0;             ///< frequency of the swings around the peak, Hz (dominant_frequency.h)
+  /// Peak with CFC 60 (up to 100 Hz), m/s²; NaN if the sampling rate is too low.
+  double at_cfc60 = std::numeric_limits<double>::quiet_NaN();
   double at_cfc10 = std::numeric_limits<double>::quiet_NaN(); ///< peak with CFC 10 (up to 17 Hz), m/s²
 };
 
 /// A shock.
 struct ShockEvent {
-  std::size_t number = 0, segment = 0; ///< from 1
+  std::size_t number = 0, segment = 0; ///< counted from 1
   std::size_t line = 0;                ///< line of the file at which the segment begins
-  double begin = 0.0, end = 0.0;       ///< s
+  double begin = 0.0, end = 0.0;       ///< begin and end, s
   std::size_t worst = 0;               ///< index of the axis with the largest peak
-  bool goes_on = false;                ///< true if the event was cut at the longest window; the next event continues it
+  bool goes_on = false;                ///< the event was cut at the longest window; the next event continues it
   std::vector<AxisEvent> axes;
 };
 
@@ -76,10 +74,10 @@ private:
   Found found_;
   std::size_t axes_ = 0, kept_ = 0, count_ = 0, segment_ = 0, line_ = 0;
   std::array<double, 3> thresholds_{};
-  bool is_inside_ = false, is_event_ = false; ///< above the release level; also above the threshold
+  bool is_inside_ = false, is_event_ = false; ///< is_inside_: above the release level; is_event_: also above the threshold
   double last_stir_ = 0.0;
-  std::size_t used_ = 0, stirred_ = 0; ///< samples of the window that belong to the event; samples up to the last one above the release
-                                       ///< level
+  /// Number of samples of the window that belong to the event; number up to the last one above the release level.
+  std::size_t used_ = 0, stirred_ = 0;
   Window window_;
 };
 

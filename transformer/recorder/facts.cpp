@@ -1,4 +1,4 @@
-// Describes the layout and the treatment of a recorder's file in text.
+// Describes the layout of a recorder's file, and how it was read, as text.
 #include "transformer/recorder/fields.h"
 #include "transformer/recorder/reader.h"
 
@@ -30,7 +30,7 @@ void add_axes(const Recording& recording, std::vector<std::string>& lines) {
   }
 }
 
-// Gravity at rest is reported as a suggestion, not subtracted.
+// Returns a sentence about gravity at rest. Its subtraction is only suggested.
 std::string gravity_text(const Recording& recording) {
   double size2 = 0.0;
   std::size_t most = 0;
@@ -110,7 +110,8 @@ std::string delimiter_text(char delimiter) {
 } // namespace
 
 std::string impossible_reading(const Recording& recording) {
-  constexpr double k_beyond_transport = 1000.0 * k_gravity; // m/s²; shocks that destroy a machine have less than a tenth
+  // Accelerations beyond this, m/s², are impossible in transport; shocks that destroy a machine have less than a tenth.
+  constexpr double k_beyond_transport = 1000.0 * k_gravity;
   const auto text = [](const std::string& what, double value) { return what + " reads " + in_g(value) + ", which no transport gives."; };
   for (std::size_t i = 0; i < recording.layout.axes.size(); ++i) {
     const double most = std::max(std::abs(recording.facts.axes[i].least), std::abs(recording.facts.axes[i].greatest));

@@ -105,7 +105,7 @@ std::optional<AccelerationUnit> acceleration_unit(std::string_view text) {
     if (lower == word) return AccelerationUnit{"g", k_gravity};
   for (const char* word : {"mg", "milli-g", "millig", "mgn", "mgal*1000"})
     if (lower == word) return AccelerationUnit{"mg", k_gravity / 1000.0};
-  // Bytes of "²" in UTF-8 and in Latin-1.
+  // Includes the bytes of "²" in UTF-8 and in Latin-1.
   for (const char* word : {"m/s^2", "m/s2", "m/s**2", "m/s\xC2\xB2", "m/s\xB2", "m/s/s", "m/(s^2)", "m s-2", "m s^-2", "m\xC2\xB7s-2",
                            "ms-2", "ms^-2", "mps2", "m/sec^2", "m/sec2"})
     if (lower == word) return AccelerationUnit{"m/s^2", 1.0};

@@ -1,4 +1,4 @@
-// Splits lines of a table into fields and parses numbers with either decimal sign, missing values, and units as recorders write them.
+// Splits lines of a table into fields, and parses numbers with either decimal sign, missing values, and units as recorders write them.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 namespace steplap {
 
 [[nodiscard]] std::string_view trimmed_blanks(std::string_view text);
-/// Changes ASCII letters only.
+/// Returns the text with ASCII letters in lower case; other characters are unchanged.
 [[nodiscard]] std::string lower_case(std::string_view text);
 
 /// Splits a line into fields without surrounding blanks and quotes. Delimiters within quotes are ignored. Delimiter ' ' means any number of
@@ -18,12 +18,12 @@ namespace steplap {
 
 /// Parses the whole field as a finite number with decimal sign '.' or ','. Returns nothing for any other text, including "inf" and "nan".
 [[nodiscard]] std::optional<double> parse_number(std::string_view field, char decimal);
-/// Returns true for "", "NaN", "N/A", "-", "null" and similar texts: the recorder had no value.
+/// Returns true for "", "NaN", "N/A", "-", "null" and similar texts, with which recorders mark a missing value.
 [[nodiscard]] bool is_missing(std::string_view field);
 /// Returns true if the field begins with a digit, or with a sign or decimal sign followed by a digit.
 [[nodiscard]] bool begins_like_number(std::string_view field);
 
-/// Meaning of a unit of acceleration: its factor to m/s². For counts the user must give the factor.
+/// A unit of acceleration with its factor to m/s². For counts the user must supply the factor.
 struct AccelerationUnit {
   std::string name; ///< name for display: "g", "mg", "m/s^2", "counts"
   double factor = 0.0;
@@ -34,7 +34,7 @@ inline constexpr double k_gravity = 9.80665;
 /// Recognises g, mg (also mG: thousandths of gravity, never gauss or grams), all spellings of m/s², counts, and every unit that UDUNITS can
 /// convert to m/s². Returns nothing for other units.
 [[nodiscard]] std::optional<AccelerationUnit> acceleration_unit(std::string_view text);
-/// Returns the seconds in a unit of time: s, ms, us, ns, min, h, days, in several spellings. Returns nothing for other units.
+/// Returns the number of seconds in a unit of time: s, ms, us, ns, min, h, days, in several spellings. Returns nothing for other units.
 [[nodiscard]] std::optional<double> time_unit(std::string_view text);
 
 /// A column heading split into name and unit: "Acc. X [mG]" gives "Acc. X" and "mG".

@@ -14,8 +14,8 @@ class ChannelFilter {
 public:
   static constexpr double k_ratio = 2.0775; ///< f0 / CFC, SAE J211-1 appendix C: at f0 the gain is 1/2
 
-  /// `frequency_class` is in Hz, as in "CFC 60". The sampling rate must be at least ten times larger (ISO 6487). Throws
-  /// std::invalid_argument.
+  /// `frequency_class`: CFC in Hz, as in "CFC 60". The sampling rate must be at least ten times larger (ISO 6487). Throws
+  /// std::invalid_argument otherwise.
   ChannelFilter(double frequency_class, double rate);
 
   /// Filters in place, forwards and backwards.

@@ -35,7 +35,7 @@ Metadata metadata_of(const std::vector<HeaderLine>& lines) {
     if (!split_fields(text.substr(place + 1), separator, fields)) continue;
     Metadata::Value value{line.number, {}};
     for (const std::string_view field : fields) value.values.emplace_back(field);
-    metadata.entries.emplace(key, std::move(value)); // the first occurrence of a key counts
+    metadata.entries.emplace(key, std::move(value)); // emplace() keeps the first occurrence of a key
   }
   return metadata;
 }
@@ -132,7 +132,7 @@ bool holds(const std::vector<std::string>& words, std::initializer_list<const ch
   });
 }
 
-// Returns 'x', 'y' or 'z' with a weight: 3 if the name contains acceleration.
+// Returns the axis 'x', 'y' or 'z' with a weight, which is 3 if the name also contains acceleration.
 std::pair<char, int> axis_of(const std::vector<std::string>& words) {
   const bool is_acceleration =
       std::any_of(words.begin(), words.end(), [](const std::string& w) { return w.starts_with("acc") || w == "shock" || w == "a"; });
@@ -152,7 +152,7 @@ std::pair<char, int> axis_of(const std::vector<std::string>& words) {
 NamedRole role_of(std::string_view name) {
   const std::vector<std::string> words = words_of(name);
   if (words.empty()) return trimmed_blanks(name) == "#" ? NamedRole{Role::index, 1} : NamedRole{};
-  // Other sensors have axes, too, and are excluded.
+  // Axes of other sensors are excluded.
   const bool is_other_sensor = std::any_of(words.begin(), words.end(), [](const std::string& w) {
     return w.starts_with("gyr") || w.starts_with("rot") || w.starts_with("ang") || w.starts_with("mag") || w.starts_with("quat") ||
            w.starts_with("orient") || w.starts_with("temp") || w.starts_with("press") || w.starts_with("hum") || w.starts_with("veloc") ||
@@ -174,7 +174,7 @@ NamedRole role_of(std::string_view name) {
   if (holds(words, {"datetime", "timestamp", "zeitstempel"}) || (holds(words, {"date"}) && holds(words, {"time"}))) return {Role::time, 3};
   if (holds(words, {"date", "datum"})) return {Role::date, 2};
   if (holds(words, {"time", "times", "zeit", "elapsed", "epoch", "uhrzeit"})) return {Role::time, 2};
-  if (trimmed_blanks(name) == "T") return {}; // means temperature or time; used as time only if no other column is a time
+  if (trimmed_blanks(name) == "T") return {}; // "T" is temperature or time; it is used as time only if no other column is a time
   if (words.size() == 1 && holds(words, {"t", "seconds", "sec", "s", "ms", "millis"})) return {Role::time, 1};
   if (holds(words, {"sample", "samples", "index", "idx", "nr", "no", "n", "scan"})) return {Role::index, 1};
   if (std::any_of(words.begin(), words.end(), [](const std::string& w) { return w.starts_with("accel"); }) ||

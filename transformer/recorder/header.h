@@ -15,7 +15,7 @@ namespace steplap {
 
 /// A line before the data.
 struct HeaderLine {
-  std::size_t number = 0; ///< from 1
+  std::size_t number = 0; ///< line number, from 1
   std::string text;
 };
 
@@ -25,7 +25,7 @@ struct Metadata {
     std::size_t line = 0;
     std::vector<std::string> values; ///< text after the key, at least one entry
   };
-  std::map<std::string, Value> entries; ///< by key, reduced to lower case letters and digits
+  std::map<std::string, Value> entries; ///< values by key; keys are reduced to lower case letters and digits
 
   /// Returns the value of the first of the keys that exists; nullptr if none does.
   [[nodiscard]] const Value* find(std::initializer_list<const char*> keys) const;
@@ -70,7 +70,7 @@ enum class Role {
   velocity_change,
   slot
 };
-/// A role with its confidence: "Ax" has a higher weight than "X". 0: the name does not indicate this role.
+/// A role with its confidence: "Ax" has a higher weight than "X"; 0 if the name does not indicate this role.
 struct NamedRole {
   Role role = Role::other;
   int weight = 0;

@@ -24,7 +24,7 @@ std::string heading_text(const TableShape& shape, std::size_t column) {
   return column < shape.names.size() && !shape.names[column].empty() ? shown(shape.names[column]) : "column " + std::to_string(column + 1);
 }
 
-// Takes the axis columns from the options; "-" reverses the sign.
+// Returns the axis columns that the options name; "-" reverses the sign.
 std::vector<AxisColumn> chosen_axes(const RecordLayout& layout, const ReadOptions& options) {
   std::vector<AxisColumn> axes;
   const std::pair<char, const std::optional<std::string>*> chosen[] = {{'x', &options.x}, {'y', &options.y}, {'z', &options.z}};
@@ -75,7 +75,7 @@ std::vector<AxisColumn> named_axes(const RecordLayout& layout) {
   return axes;
 }
 
-// Without names the columns are x, y and z if three columns remain after a first column with times.
+// Returns axis columns of a table without names: x, y and z, if three columns remain after a first column with times.
 std::vector<AxisColumn> unnamed_axes(const RecordLayout& layout, const std::vector<HeaderLine>& head, const ReadOptions& options) {
   const std::size_t width = layout.shape.width, line = head[layout.shape.first_data].number;
   std::vector<std::string_view> fields;
@@ -139,13 +139,13 @@ void scale_counts(AxisColumn& axis, const RecordLayout& layout, std::size_t line
   }
 }
 
-// A unit of all accelerations, said in the lines before the data.
+// A unit of all accelerations, given in the lines before the data.
 struct StatedUnit {
   std::string text;
   std::size_t line = 0;
 };
 
-// Finds "Units: mG", or ", Units, mG" within a line on a sensor. Contradictory lines are ignored.
+// Finds "Units: mG", or ", Units, mG" within a line about a sensor. Contradictory lines are ignored.
 std::optional<StatedUnit> unit_of(const Metadata& metadata) {
   if (const auto* said = metadata.find({"units", "unit", "accelunits", "accelerationunit", "accelerationunits"}))
     return StatedUnit{said->values.front(), said->line};
@@ -191,7 +191,7 @@ void scale_axis(AxisColumn& axis, const RecordLayout& layout, const std::vector<
   axis.factor *= unit->factor;
 }
 
-// Returns true if columns are named as peaks and none as an axis: the file is then a list of peaks without waveforms.
+// Returns true if columns are named as peaks and none as an axis: the file is then a list of peaks, without waveforms.
 bool find_peaks(RecordLayout& layout) {
   PeakColumns& peaks = layout.peaks;
   std::string unit_text, source;

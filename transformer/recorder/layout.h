@@ -1,6 +1,6 @@
 // Determines the layout of a recorder's file: table, time, axes and units.
 //
-// The layout is derived from the head of the file (at most a megabyte) and the options only, and applies to the whole file: later rows that
+// The layout is derived only from the head of the file (at most a megabyte) and the options, and applies to the whole file: later rows that
 // do not fit are rejected. If the head is ambiguous, the error message names the option that resolves the ambiguity.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace steplap {
 
-/// How a line is split into fields.
+/// Rules for splitting a line into fields, and properties of the table.
 struct TableShape {
   char delimiter = ',';
   char decimal = '.';
@@ -25,9 +25,9 @@ struct TableShape {
   bool has_decimals = true;                   ///< false if the head contains whole numbers only
   std::size_t first_data = 0;                 ///< index of the first data row in the head
   std::size_t width = 0;                      ///< number of fields of a full row
-  std::size_t most_fields = 0;                ///< of the longest rows; columns beyond `width` have no name and are left out
-  std::size_t names_line = 0, units_line = 0; ///< line numbers; 0: none
-  std::vector<std::string> names, units;      ///< one per column, or empty
+  std::size_t most_fields = 0;                ///< number of fields of the longest rows; columns beyond `width` have no name and are omitted
+  std::size_t names_line = 0, units_line = 0; ///< line numbers of names and units; 0: none
+  std::vector<std::string> names, units;      ///< names and units, one per column, or empty
 
   /// Splits a line. Returns false if a quote is not closed, or if the number of fields does not form pairs.
   [[nodiscard]] bool split(std::string_view line, std::vector<std::string_view>& fields) const;
@@ -43,13 +43,13 @@ enum class TimeKind { none, number, stamp, date_and_clock };
 /// Source of the time of samples.
 struct TimeBase {
   TimeKind kind = TimeKind::none;
-  std::size_t column = 0, clock_column = 0; ///< column indices, from 0
-  double factor = 1.0;                      ///< s per unit, for numbers
-  bool is_relative = false;                 ///< for numbers: count time from the first row (epoch, days)
-  unsigned date_order = 1;                  ///< one of DateOrder
+  std::size_t column = 0, clock_column = 0; ///< indices of the columns of time, and of a separate time of day, from 0
+  double factor = 1.0;                      ///< seconds per unit of the numbers
+  bool is_relative = false;                 ///< the numbers are counted from the first row (epoch, days)
+  unsigned date_order = 1;                  ///< order of the date, one of DateOrder
   std::optional<std::size_t> index_column;  ///< column that counts samples
-  double rate = 0.0;                        ///< Hz
-  std::string text, rate_text, start;       ///< for display; start may be ""
+  double rate = 0.0;                        ///< sampling rate, Hz
+  std::string text, rate_text, start;       ///< texts for display; `start` may be ""
 };
 
 /// A column with the acceleration of one axis.
@@ -58,7 +58,7 @@ struct AxisColumn {
   std::size_t column = 0;
   std::string heading; ///< heading in the file, or "column 2"
   double factor = 1.0; ///< factor to m/s², sign included
-  std::string unit;    ///< as in the file
+  std::string unit;    ///< unit as in the file
   std::string unit_source;
 };
 
@@ -78,16 +78,16 @@ struct RecordLayout {
   std::vector<AxisColumn> axes; ///< at most three, in the order x, y, z; empty for a table of peaks
   bool is_peaks = false;
   PeakColumns peaks;
-  bool holds = false; ///< omitted samples repeat the value before them
+  bool holds = false; ///< recorder omits samples that equal the one before
   std::string hold_reason;
   std::optional<double> range;    ///< range of the sensor, m/s²
-  std::vector<std::string> notes; ///< sentences for the user
+  std::vector<std::string> notes; ///< remarks for the user, one sentence each
 };
 
 /// Determines the layout. Throws RecordError if it is ambiguous, unknown or impossible.
 [[nodiscard]] RecordLayout find_record_layout(const std::vector<HeaderLine>& head, const std::string& file, const ReadOptions& options);
 
-/// Part of find_record_layout(): determines the time base. `layout` must contain shape, axes and family.
+/// Determines the time base, as part of find_record_layout(). Precondition: `layout` contains shape, axes and family.
 [[nodiscard]] TimeBase find_time(const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata,
                                  const ReadOptions& options, std::vector<std::string>& notes);
 /// Returns the index of a column given by name or by number from 1.

@@ -120,7 +120,8 @@ void LineSource::check_zero_bytes(std::size_t from) {
                     "A zero byte stands here: this is no text. Export the record as CSV from the recorder's program.");
 }
 
-// Converts raw_ from UTF-16 and appends it. Characters above U+FFFF consist of two code units. An odd byte at the end is an error.
+// Converts `count` bytes of raw_ from UTF-16 and appends them. Characters above U+FFFF consist of two code units. An odd byte at the end is
+// an error.
 void LineSource::append_utf16(std::size_t count) {
   if (count % 2 != 0)
     throw RecordError(name_, 0, 0, "The file is UTF-16 with an odd number of bytes: it is cut. Copy it again from the recorder.");
@@ -159,7 +160,7 @@ void LineSource::refill() {
 }
 
 bool LineSource::next(std::string_view& line) {
-  if (line_end_ == 0) { // the line end is CR if the first CR is not followed by LF
+  if (line_end_ == 0) { // the first CR decides: lines end with CR unless LF follows
     const std::size_t first = buffer_.find_first_of("\r\n");
     const bool is_cr = first != std::string::npos && buffer_[first] == '\r' && first + 1 < buffer_.size() && buffer_[first + 1] != '\n';
     line_end_ = is_cr ? '\r' : '\n';

@@ -25,7 +25,7 @@ public:
   [[nodiscard]] bool next(std::string_view& line);
   /// Returns the number of the line that next() read last, from 1.
   [[nodiscard]] std::size_t number() const { return number_; }
-  /// Returns true if this line ended with a line break. Only the last line of a file may have none.
+  /// Returns true if a line break followed the last line read. Only the last line of a file may have none.
   [[nodiscard]] bool is_terminated() const { return is_terminated_; }
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Returns "UTF-8", "UTF-8 with byte order mark", "UTF-16 (little-endian)", …
@@ -49,7 +49,7 @@ private:
   unsigned pending_high_ = 0; ///< first code unit of a UTF-16 surrogate pair
   bool is_at_end_ = false, is_terminated_ = true;
   Form form_ = Form::bytes;
-  char line_end_ = 0; ///< 0: not yet known
+  char line_end_ = 0; ///< LF or CR; 0: not yet known
 };
 
 } // namespace steplap

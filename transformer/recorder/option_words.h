@@ -1,4 +1,4 @@
-// Words of the options that resolve ambiguities of a recorder's file, on the command line and in models.
+// Names of the values of options that resolve ambiguities of a recorder's file, on the command line and in models.
 #pragma once
 
 #include "transformer/recorder/read_options.h"
@@ -24,7 +24,7 @@ inline constexpr OptionWords<IfRepeated, 3> k_repeated{
 inline constexpr OptionWords<IfBackward, 3> k_backward{
     {{"refuse", IfBackward::refuse}, {"split", IfBackward::split}, {"drop", IfBackward::drop}}};
 
-/// Returns the value of a word; nothing for an unknown word.
+/// Returns the value with this name; nothing for an unknown name.
 template <class Words> [[nodiscard]] auto meaning_of(const Words& words, const std::string& word) {
   std::optional<decltype(words[0].second)> meaning;
   for (const auto& [known, value] : words)

@@ -66,7 +66,7 @@ void SignalWriter::begin_segment(std::size_t) {
   ++segments_;
   text_ = std::make_unique<CsvText>(names_);
   rows_ = 0;
-  if (segments_ == 1) { // a single segment is called signal.csv, so the first file is named only when this is known
+  if (segments_ == 1) { // file names are assigned only here, because a single segment is called signal.csv
     first_ = std::make_unique<PartFile>(folder_ + "/signal.csv", is_overwriting_);
   } else {
     now_ = std::make_unique<PartFile>(path(segments_), is_overwriting_);
@@ -112,7 +112,7 @@ std::string window_csv(const Window& window, const RecordLayout& layout, DriftCo
   CsvText text(signal_names(layout), size);
   std::array<double, 3> mean{};
   for (std::size_t i = 0; i < axes && correction == DriftCorrection::line && size > 1; ++i) {
-    double velocity = 0.0; // in sampling intervals
+    double velocity = 0.0; // velocity in units of acceleration times sampling interval
     for (std::size_t k = 1; k < size; ++k) velocity += 0.5 * (window.filtered[i][k - 1] + window.filtered[i][k]);
     mean[i] = velocity / static_cast<double>(size - 1);
   }

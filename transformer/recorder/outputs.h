@@ -1,4 +1,5 @@
-// Writes the results for a record: the conditioned signal as CSV for `record` signals, events and spectra as CSV, and everything as JSON.
+// Writes the results for a record: the conditioned signal as CSV for `record` signals, events and spectra as CSV, and a summary of all
+// results as JSON.
 #pragma once
 
 #include "transformer/recorder/events.h"
@@ -18,7 +19,7 @@ namespace steplap {
 /// A file written piece by piece under a temporary name. commit() renames it; without commit() it is removed.
 class PartFile {
 public:
-  /// Throws FileError if the file exists and must not be replaced, or cannot be written.
+  /// Opens the temporary file. Throws FileError if `path` exists and must not be replaced, or cannot be written.
   PartFile(std::string path, bool is_overwriting);
   PartFile(const PartFile&) = delete;
   PartFile& operator=(const PartFile&) = delete;
@@ -32,8 +33,8 @@ private:
   std::FILE* file_ = nullptr;
 };
 
-/// Writes the conditioned signal as it arrives: signal.csv, or one file per segment, signal_001.csv, signal_002.csv …, if there are
-/// several, because a `record` signal would interpolate across a gap. No file appears before commit().
+/// Writes the conditioned signal while it arrives: signal.csv, or for several segments one file each, signal_001.csv, signal_002.csv …,
+/// because a `record` signal would interpolate across a gap. No file appears before commit().
 class SignalWriter : public SignalSink {
 public:
   SignalWriter(std::string folder, bool is_overwriting) : folder_(std::move(folder)), is_overwriting_(is_overwriting) {}
@@ -42,7 +43,7 @@ public:
   void begin_segment(std::size_t line) override;
   void put(double t, const double* plain, const double* filtered) override;
   void end_segment() override;
-  /// Renames the files to their final names and returns these.
+  /// Renames the files to their final names and returns these names.
   std::vector<std::string> commit();
 
 private:
@@ -74,7 +75,7 @@ struct RecordResult {
   Recording recording;
   Conditioning conditioning;
   EventRules rules;
-  double rate = 0.0, bandwidth = 0.0; ///< Hz, of the conditioned signal
+  double rate = 0.0, bandwidth = 0.0; ///< sampling rate and bandwidth of the conditioned signal, Hz
   std::size_t interpolated = 0;
   Drift drift;
   std::vector<EventResult> events;

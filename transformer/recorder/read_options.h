@@ -1,4 +1,4 @@
-// Options with which a user supplies or corrects information about a recorder's file.
+// Options by which a user supplies or corrects information about a recorder's file.
 #pragma once
 
 #include <array>
@@ -17,19 +17,19 @@ struct ReadOptions {
   std::optional<std::string> x, y, z;
   std::optional<std::string> time;      ///< column by name or number; "none": the file has no time column
   std::optional<std::string> time_unit; ///< "s", "ms", …, "epoch", "epoch ms", "days"
-  std::optional<double> rate;           ///< Hz
+  std::optional<double> rate;           ///< sampling rate, Hz
   std::optional<std::string> unit;      ///< unit of all axes
   std::optional<double> counts_per_g;
   std::optional<double> range;               ///< range of the sensor, m/s²; none: as in the file
-  std::optional<std::array<double, 2>> rest; ///< stretch of the record at rest, s; none: its first second
-  std::optional<char> delimiter;             ///< ',', ';', '\t' or ' '
-  std::optional<char> decimal;               ///< '.' or ','
-  std::optional<unsigned> dates;             ///< one of DateOrder
+  std::optional<std::array<double, 2>> rest; ///< interval of the record at rest, s; none: its first second
+  std::optional<char> delimiter;             ///< delimiter: ',', ';', '\t' or ' '
+  std::optional<char> decimal;               ///< decimal sign: '.' or ','
+  std::optional<unsigned> dates;             ///< order of dates, one of DateOrder
   IfMissing missing = IfMissing::refuse;
   IfRepeated repeated = IfRepeated::refuse;
   IfBackward backward = IfBackward::refuse;
-  bool holds = false; ///< omitted samples repeat the value before them
-  double gap = 3.5;   ///< in sampling intervals; longer gaps split the record into segments
+  bool holds = false; ///< the recorder omits samples that equal the one before
+  double gap = 3.5;   ///< longest gap within a segment, in sampling intervals; longer gaps split the record into segments
 };
 
 } // namespace steplap

@@ -13,13 +13,13 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_hole = 1.5;   // sampling intervals; in a longer step a row is missing
-constexpr double k_early = 0.3;  // of an interval; a row that is earlier than this compensates for a late row before it
-constexpr double k_bends = 0.95; // of a sensor's range, where amplifiers begin to saturate before they clip
+constexpr double k_hole = 1.5;   // time step, in sampling intervals, above which a row is missing
+constexpr double k_early = 0.3;  // part of an interval by which a row must be early to compensate for a late row before it
+constexpr double k_bends = 0.95; // part of the sensor's range at which amplifiers begin to saturate
 constexpr std::size_t k_head_lines = 5000, k_head_bytes = std::size_t{1} << 20U;
 
 // Detects clipping: sequences of equal samples at the extreme value of an axis. A smooth peak is entered and left by single steps of the
-// converter, a clipped one by a jump of at least three steps.
+// converter, a clipped peak by a jump of at least three steps.
 class FlatWatch {
 public:
   void take(double value, std::size_t line) {
@@ -39,7 +39,7 @@ public:
     end_run(0.0);
     facts.least = low_.value;
     facts.greatest = -high_.value;
-    for (const End* end : {&low_, &high_}) { // uses the extreme further from rest, because a long rest would hide a peak
+    for (const End* end : {&low_, &high_}) { // the extreme further from rest is decisive, because a long rest would hide a peak
       const double value = end == &low_ ? end->value : -end->value;
       if (end->longest >= 3 && end->jump >= 3.0 * step_ &&
           (facts.flat_longest == 0 || std::abs(value - facts.rest) > std::abs(facts.flat_value - facts.rest)))
@@ -48,7 +48,7 @@ public:
   }
 
 private:
-  struct End { ///< sequence at an extreme; values are negated if necessary so that it is the minimum
+  struct End { ///< longest sequence at an extreme; values are negated if necessary, so that the extreme is the minimum
     double value = std::numeric_limits<double>::infinity(), jump = 0.0;
     std::size_t longest = 0, line = 0;
   };
@@ -131,7 +131,8 @@ private:
       note_remark();
       return;
     }
-    const bool may_name = layout_->shape.joins_pairs && split_fields(text, layout_->shape.delimiter, fields_); // names do not come in pairs
+    // Names have no decimal comma, so they do not form pairs.
+    const bool may_name = layout_->shape.joins_pairs && split_fields(text, layout_->shape.delimiter, fields_);
     if (may_name && fields_.size() == layout_->shape.width && is_terminated_ && is_text_line()) return take_text_line();
     if (!layout_->shape.split(text, fields_)) {
       if (!is_terminated_) return cut();
@@ -165,12 +166,12 @@ private:
 
   void cut() { recording_.facts.cut_line = line_; }
 
-  // A blank line, or one of signs only, after a row. It separates blocks if another row follows.
+  // Records a blank line, or one that contains only signs, after a row. It separates blocks if another row follows.
   void note_separator() {
     if (has_previous_ && separator_line_ == 0) separator_line_ = line_;
   }
 
-  // Without times nothing tells how much later the block after a separator begins, unless a separator follows every row or two.
+  // Counts separators as gaps of unknown length if the file has no times, unless a separator follows every row or two.
   void judge_separators() {
     ReadFacts& facts = recording_.facts;
     const bool has_times = layout_->time.kind != TimeKind::none || uses_index_;
@@ -210,7 +211,7 @@ private:
     }
   }
 
-  // Returns true for the columns of times, of numbers of samples and of axes.
+  // Returns true for the columns of times, sample counters and axes.
   bool is_measured(std::size_t column) const {
     const TimeBase& time = layout_->time;
     const bool is_time =
@@ -229,14 +230,14 @@ private:
     const std::string_view last = fields_.size() >= needed_ && needed_ > 0 ? fields_[needed_ - 1] : std::string_view();
     const bool is_first = row_fields_ == 0;
     row_fields_ = fields_.size();
-    if (last.empty() || last.back() < '0' || last.back() > '9') return; // value missing
+    if (last.empty() || last.back() < '0' || last.back() > '9') return; // the value is missing
     const std::size_t now = decimals(last);
     is_fixed_ &= is_first || now == row_decimals_;
     row_decimals_ = now;
   }
 
-  // Returns true if the last line, which has no line break, is complete: it has as many fields as the header or the row before, and a
-  // number as the last field.
+  // Returns true if the last line, which has no line break, is complete: it has as many fields as the header or the row before, and its
+  // last field is a number.
   bool is_whole() const {
     if (fields_.size() > needed_) return true; // a delimiter follows the last needed field
     if (fields_.size() < std::min(layout_->shape.width, std::max(row_fields_, needed_))) return false;
@@ -244,14 +245,15 @@ private:
     return !last.empty() && last.back() >= '0' && last.back() <= '9' && decimals(last) >= row_decimals_;
   }
 
-  // Returns true for an integer, or a number in a file with varying numbers of decimals: it may have lost digits without a visible sign.
+  // Returns true if the last number may have lost digits without a visible sign: an integer, or a number in a file with varying numbers of
+  // decimals.
   bool may_lack_digits() const {
     if (fields_.size() > needed_) return false;
     const std::size_t digits = decimals(fields_.back());
     return digits == 0 || !is_fixed_ || row_fields_ == 0 || digits != row_decimals_;
   }
 
-  // Returns true for a title, names or units of another block of the file.
+  // Returns true for a title, or for the names or units of another block of the file.
   bool is_text_line() const {
     const std::string_view first = fields_.front();
     if (begins_like_number(first) || first.empty() || looks_like_row(fields_)) return false;
@@ -271,7 +273,8 @@ private:
       fail(fields_.front(), "This line names other columns than line " + std::to_string(shape.names_line) +
                                 ". Split the file before it, and read the parts one by one.");
     recording_.facts.blocks.note(line_);
-    if (is_of_full_width) recording_.facts.last_comment = shown(text_.substr(0, 80)); // names and units are repeated with each block
+    // Full width: names and units are repeated with each block.
+    if (is_of_full_width) recording_.facts.last_comment = shown(text_.substr(0, 80));
     else note_remark();
     is_new_block_ = true;
   }
@@ -285,7 +288,7 @@ private:
     const auto comma = field.find(',');
     if (!shape.has_decimals && shape.delimiter != ',' && comma != std::string_view::npos && parse_number(field, ',') &&
         (field.size() - comma != 4 || field.front() == '0')) {
-      shape.decimal = ','; // first number in the file with decimals
+      shape.decimal = ','; // the first number with decimals defines the decimal sign
       shape.has_decimals = true;
       return *parse_number(field, ',');
     }
@@ -296,7 +299,7 @@ private:
                     "' is not a finite number. Correct it, or leave the field empty and give --missing skip or hold.");
   }
 
-  // Returns false if the row contains no sample.
+  // Reads the accelerations of a row. Returns false if the row contains no sample.
   bool take_axes() {
     ReadFacts& facts = recording_.facts;
     std::size_t missing = 0;
@@ -327,14 +330,14 @@ private:
     return true;
   }
 
-  // Omits a row. The row still counts for the time if times are counted by rows. Returns false.
+  // Omits a row, which still counts for the time if times are counted by rows. Returns false.
   bool skip_row() {
     if (is_new_block_ && layout_->time.kind == TimeKind::none && !uses_index_) end_segment(), rows_in_block_ = 0, is_new_block_ = false;
     ++rows_in_block_;
     return false;
   }
 
-  // Returns true if another sensor has a value in this row; such a row contains no acceleration.
+  // Returns true if another sensor has a value in this row. Such a row has no acceleration.
   bool has_other_value() const {
     for (std::size_t i = 0; i < fields_.size(); ++i)
       if (!is_measured(i) && !is_missing(fields_[i])) return true;
@@ -435,7 +438,7 @@ private:
     put(t);
   }
 
-  // A block that begins where the previous one ended continues it.
+  // Records a gap before a new block, unless the block begins where the previous one ended. `passed`: time since then, s.
   void note_block_gap(double passed) {
     ReadFacts& facts = recording_.facts;
     if (passed > 0.0 && passed <= k_hole * step_) return;
@@ -443,7 +446,8 @@ private:
     facts.longest_block_gap = std::max(facts.longest_block_gap, passed > 0.0 ? passed : std::numeric_limits<double>::infinity());
   }
 
-  // Rows are missing, unless the next row is early by the same amount: then the clock jitters.
+  // Stores a suspected gap of missing rows. If the next row is early by the same amount, the clock jitters and no row is missing. `passed`:
+  // time since the previous row, s.
   void suspect_hole(double passed) {
     hole_ = Hole{line_, t_, passed, static_cast<std::size_t>(std::lround(passed / step_)) - 1, previous_, values_};
   }
@@ -489,8 +493,8 @@ private:
     sink_.put(t, a.data());
   }
 
-  // Treats a row with the same time as the row before: keeps the first or the last of them, or throws. Returns false, because the row is
-  // no further sample.
+  // Handles a row with the same time as the row before: keeps the first or the last of them, or throws. Returns false, because the row adds
+  // no sample.
   bool take_repeated(std::string_view place) {
     if (options_.repeated == IfRepeated::refuse)
       fail(place, "The time '" + shown(place.substr(0, 40)) +
@@ -585,22 +589,22 @@ private:
   const RecordLayout* layout_ = nullptr;
   std::vector<HeaderLine> head_;
   bool head_is_terminated_ = true, is_terminated_ = true;
-  std::string_view text_; ///< the line
+  std::string_view text_; ///< the present line
   std::vector<std::string_view> fields_;
   std::size_t line_ = 0, needed_ = 0, rows_in_block_ = 0, summed_ = 0;
-  std::size_t row_fields_ = 0, row_decimals_ = 0; ///< of the previous row: number of fields, and decimals of the last field
-  bool is_fixed_ = true;                          ///< true while the last numbers of all rows have equally many decimals
-  double step_ = 0.0;                             ///< s
-  std::vector<std::string> first_words_;          ///< of the first row, per column
-  Counted separators_;                            ///< blank lines, or lines of signs only, between rows
-  std::size_t separator_line_ = 0;                ///< of the last one without a row after it; 0: none
+  std::size_t row_fields_ = 0, row_decimals_ = 0; ///< number of fields and decimals of the last field in the previous row
+  bool is_fixed_ = true;                          ///< the last fields of all rows so far have equally many decimals
+  double step_ = 0.0;                             ///< sampling interval, s
+  std::vector<std::string> first_words_;          ///< words of the first row, per column
+  Counted separators_;                            ///< blank lines, or lines that contain only signs, between rows
+  std::size_t separator_line_ = 0;                ///< line of the last separator without a row after it; 0: none
   struct Row {
     double t = 0.0;
     std::array<double, 3> a{};
     std::size_t line = 0;
   };
   std::optional<Hole> hole_;   ///< suspected gap, until the next row confirms it
-  std::optional<Row> waiting_; ///< row that is held back, because of several rows with the same time the last one is kept
+  std::optional<Row> waiting_; ///< row that is held back: of several rows with the same time the last one is kept
   std::array<double, 3> values_{}, previous_{}, sums_{};
   std::array<bool, 3> is_missing_{};
   std::array<FlatWatch, 3> watches_;

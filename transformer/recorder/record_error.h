@@ -8,7 +8,7 @@
 
 namespace steplap {
 
-/// Message "FILE:LINE:COLUMN: cause. Remedy." Exit code 2, as for all invalid files.
+/// Error with the message "FILE:LINE:COLUMN: cause. Remedy." Exit code 2, as for all invalid files.
 class RecordError : public FileError {
 public:
   /// Line and column count from 1; 0 means the whole file. `what` contains cause and remedy as sentences.

@@ -27,20 +27,20 @@ struct Recorder : SignalDefinition {
   std::string file, sha256;
   Text axis;
   std::vector<double> map;
-  Text x, y, z, time, time_unit, unit, delimiter, decimal, dates; // as in ReadOptions
+  Text x, y, z, time, time_unit, unit, delimiter, decimal, dates; // fields as in ReadOptions
   std::optional<double> rate, counts_per_g;
   std::string missing = "refuse", repeated = "refuse", backward = "refuse";
   bool holds = false;
   double gap = ReadOptions{}.gap;
   Text gravity;
-  std::vector<double> rest; // s, s
+  std::vector<double> rest; // interval at rest: begin and end, s
   std::optional<double> cfc, resample;
-  std::optional<double> from, to; // s
+  std::optional<double> from, to; // interval of the record, s
   std::optional<long> event;
   double threshold = EventRules::k_default_threshold;
   std::string drift = "none";
   double factor = 1.0;
-  double start = 0.0; // s
+  double start = 0.0; // time in the run at which the window begins, s
 };
 
 [[noreturn]] void fail(const Recorder& r, const std::string& what) { throw ModelError(r.where, "recorder '" + r.name + "': " + what); }
@@ -103,7 +103,7 @@ struct Conditioned : SignalSink {
   void end_segment() override {}
 };
 
-// For "-z": index of the axis in the record and the sign −1.
+// Returns the index of an axis in the record and its sign, for example −1 for "-z".
 std::pair<std::size_t, double> axis_of(const Recorder& r, const RecordLayout& layout, const std::string& text, const char* field) {
   const char letter = text.back();
   const auto found = std::find_if(layout.axes.begin(), layout.axes.end(), [&](const AxisColumn& each) { return each.axis == letter; });
@@ -122,7 +122,7 @@ std::array<double, 3> direction_of(const Recorder& r, const RecordLayout& layout
     return direction;
   }
   if (r.map.size() != 3) fail(r, "'map' must have three numbers, the shares of x, y and z, got " + std::to_string(r.map.size()));
-  constexpr double k_rough = 1e-3; // tolerance for typed directions
+  constexpr double k_rough = 1e-3; // tolerance of the length of typed directions
   const double length = std::sqrt(r.map[0] * r.map[0] + r.map[1] * r.map[1] + r.map[2] * r.map[2]);
   if (std::abs(length - 1.0) > k_rough)
     fail(r, "'map' must be a direction of length 1, got one of length " + rounded_text(length) + "; a scale is 'factor'");
@@ -151,7 +151,7 @@ std::array<double, 3> offset_of(const Recorder& r, const Recording& recording, c
     const auto [k, sign] = axis_of(r, recording.layout, *r.gravity, "gravity");
     offset[k] = sign * k_gravity;
   }
-  constexpr double k_felt = 0.5 * k_gravity; // same limit as in the command `record`, which rejects events beyond it
+  constexpr double k_felt = 0.5 * k_gravity; // reading at rest, m/s², above which 'gravity' or 'rest' must be given
   double felt = 0.0;
   for (std::size_t i = 0; i < recording.layout.axes.size(); ++i) felt += direction[i] * recording.facts.axes[i].rest;
   if (!r.gravity && r.rest.empty() && std::abs(felt) > k_felt)

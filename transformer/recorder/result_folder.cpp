@@ -13,11 +13,12 @@ namespace fs = std::filesystem;
 
 RecordFolder::RecordFolder(const std::string& folder, bool is_overwriting)
     : folder_(fs::path(folder).lexically_normal()), is_overwriting_(is_overwriting) {
-  if (!folder_.has_filename()) folder_ = folder_.parent_path(); // for "out/"
+  if (!folder_.has_filename()) folder_ = folder_.parent_path(); // removes the slash of "out/"
   if (folder_.empty()) folder_ = ".";
   refuse_existing({"record.json", "events.csv"});
   std::error_code error;
-  fs::path beside = folder_; // temporary folder next to the result folder or, if parents do not exist yet, in the nearest existing parent
+  // Parent of the temporary folder: that of the result folder or, if it does not exist yet, the nearest existing one.
+  fs::path beside = folder_;
   while (!beside.empty() && !fs::exists(beside, error)) beside = beside.parent_path();
   if (beside.empty()) beside = ".";
   if (!fs::is_directory(beside, error)) fail("'" + beside.string() + "' is no folder");

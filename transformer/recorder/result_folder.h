@@ -7,20 +7,20 @@
 
 namespace steplap {
 
-/// Collects files in a hidden folder on the same disk and moves them at the end.
+/// Collects files in a hidden folder on the same disk and moves them to the result folder at the end.
 class RecordFolder {
 public:
-  /// Throws FileError if `folder` contains results that must not be replaced, or is not writable.
+  /// Creates the hidden folder. Throws FileError if `folder` contains results that must not be replaced, or is not writable.
   RecordFolder(const std::string& folder, bool is_overwriting);
   RecordFolder(const RecordFolder&) = delete;
   RecordFolder& operator=(const RecordFolder&) = delete;
   /// Removes all files and folders created, unless commit() was called.
   ~RecordFolder();
 
-  /// Returns the folder for files before commit().
+  /// Returns the path of the hidden folder, to which files are written before commit().
   [[nodiscard]] std::string staging() const { return staging_.string(); }
   [[nodiscard]] std::string path() const { return folder_.string(); }
-  /// Moves the files to their folder and returns their names, sorted. Signal files of an earlier run with other segments are removed.
+  /// Moves the files to the result folder and returns their names, sorted. Signal files of an earlier run with other segments are removed.
   std::vector<std::string> commit();
 
 private:

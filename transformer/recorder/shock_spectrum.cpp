@@ -9,7 +9,8 @@
 namespace steplap {
 
 double shock_response(std::span<const double> samples, double rate, double frequency, double quality) {
-  // y_n = b0 x_n + b1 x_{n-1} + b2 x_{n-2} + 2 C y_{n-1} − E² y_{n-2}; E = exp(−ζ ω T), C = E cos ω_d T, S = E sin(ω_d T)/(ω_d T)
+  // Ramp-invariant filter: y_n = b0 x_n + b1 x_{n-1} + b2 x_{n-2} + 2 C y_{n-1} − E² y_{n-2}; E = exp(−ζ ω T), C = E cos ω_d T, S = E
+  // sin(ω_d T)/(ω_d T)
   const double damping = 0.5 / quality, turn = 2.0 * std::numbers::pi * frequency / rate,
                damped = turn * std::sqrt(1.0 - damping * damping);
   const double decay = portable::pow(std::numbers::e, -damping * turn);

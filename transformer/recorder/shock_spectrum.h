@@ -14,11 +14,12 @@ namespace steplap {
 
 /// A point of the spectrum.
 struct ShockPoint {
-  double frequency = 0.0;    ///< Hz
+  double frequency = 0.0;    ///< natural frequency, Hz
   double acceleration = 0.0; ///< largest magnitude, in the unit of the samples
 };
 
-/// Returns the largest absolute acceleration of one oscillator, as a magnitude. `quality` is Q = 1/(2ζ); infinity: undamped.
+/// Returns the largest absolute acceleration of one oscillator, as magnitude in the unit of the samples. `rate`, `frequency`: Hz;
+/// `quality`: Q = 1/(2ζ), infinite for no damping.
 [[nodiscard]] double shock_response(std::span<const double> samples, double rate, double frequency, double quality);
 /// Returns twelve points per octave from the lowest frequency that the duration resolves (at least 1 Hz) to a tenth of the sampling rate.
 [[nodiscard]] std::vector<ShockPoint> shock_spectrum(std::span<const double> samples, double rate, double quality = 10.0);

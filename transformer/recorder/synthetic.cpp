@@ -14,9 +14,9 @@ namespace steplap {
 
 namespace {
 
-constexpr std::int64_t k_start_ns = 1'451'903'114 * k_second_ns; // 2016-01-04 10:25:14
+constexpr std::int64_t k_start_ns = 1'451'903'114 * k_second_ns; // start time: 2016-01-04 10:25:14
 
-// Returns a uniform random number in −1 … 1 from a counter (SplitMix64).
+// Returns a uniform pseudo-random number in −1 … 1 for a counter (SplitMix64).
 double noise(std::uint64_t number) {
   std::uint64_t x = number * 0x9E3779B97F4A7C15U + 0x9E3779B97F4A7C15U;
   x = (x ^ x >> 30U) * 0xBF58476D1CE4E5B9U;
@@ -28,7 +28,7 @@ double half_sine(double t, double begin, double length, double peak) {
   return t < begin || t > begin + length ? 0.0 : peak * portable::sin(std::numbers::pi * (t - begin) / length);
 }
 
-// Acceleration in g.
+// Returns the acceleration of the example record, in g.
 std::array<double, 3> acceleration(double t, std::uint64_t sample) {
   const double x = half_sine(t, 3.0, 0.05, 3.1) + half_sine(t, 6.5, 0.12, 1.6);
   return {x + 0.01 * noise(3 * sample), 0.1 * x + 0.01 * noise(3 * sample + 1), 1.0 + 0.01 * noise(3 * sample + 2)};
@@ -48,7 +48,7 @@ std::string with_comma(std::string text) {
   return text;
 }
 
-/// Writes rows at a given rate; `row` returns the line of one sample.
+/// Writes ten seconds of rows at a given rate, Hz; `row` returns the line of one sample.
 template <class Row> void add_rows(std::string& text, double rate, Row row) {
   for (int i = 0; i < static_cast<int>(10.0 * rate); ++i) text += row(i, i / rate, acceleration(i / rate, static_cast<std::uint64_t>(i)));
 }
@@ -77,7 +77,8 @@ std::string gcdc_epoch() {
 std::string phone() {
   std::string text = "DateTime;Magnitude;X [g];Y [g];Z [g]\r\n";
   add_rows(text, 100.0, [](int i, double, const auto& a) {
-    const std::string stamp = stamp_text(k_start_ns + std::int64_t{i} * 10'000'000).substr(11, 12); // within one day
+    // Time of day: the record lies within one day.
+    const std::string stamp = stamp_text(k_start_ns + std::int64_t{i} * 10'000'000).substr(11, 12);
     const double size = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
     return "04.01.2016 " + with_comma(stamp + printed(";%.4f;%.4f;%.4f;%.4f\r\n", size, a[0], a[1], a[2]));
   });

@@ -1,4 +1,4 @@
-// Generates example records in the formats of recorder families, for tests and trials.
+// Generates example records in the formats of recorder families, for tests and demonstrations.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@ namespace steplap {
 
 /// A kind of example record.
 struct RecordKind {
-  std::string name; ///< "gcdc"
+  std::string name; ///< name such as "gcdc"
   std::string doc;
 };
 [[nodiscard]] const std::vector<RecordKind>& record_kinds();

@@ -29,7 +29,7 @@ bool has_all_values(const Fields& fields) {
          std::all_of(fields.begin(), fields.end(), [](std::string_view f) { return is_number(f) || is_missing(f) || is_stamp(f); });
 }
 
-// Returns lines that may be rows: not empty, no comment, beginning like a number or a quote.
+// Returns true if the line may be a row: not empty, not a comment, and beginning like a number or a quote.
 bool may_be_row(std::string_view line) {
   line = trimmed_blanks(line);
   if (line.starts_with('"')) line.remove_prefix(1);
@@ -56,11 +56,11 @@ char choose_delimiter(const std::vector<HeaderLine>& head) {
   return 2 * blank_rows > rows ? ' ' : ',';
 }
 
-// Collects evidence for the decimal sign from the numbers in the head.
+// Evidence for the decimal sign, from the numbers in the head of the file.
 struct DecimalSigns {
   std::size_t points = 0, commas = 0;
-  std::size_t comma_line = 0, comma_column = 0, point_line = 0, point_column = 0; ///< first occurrence of each
-  bool may_be_thousands = true; ///< true while every comma separates groups of three digits
+  std::size_t comma_line = 0, comma_column = 0, point_line = 0, point_column = 0; ///< position of the first comma and of the first point
+  bool may_be_thousands = true;                                                   ///< every comma so far separates groups of three digits
 };
 
 bool is_in_thousands(std::string_view number) {
@@ -110,7 +110,7 @@ bool may_be_pairs(const std::vector<HeaderLine>& head, const TableShape& shape) 
 void settle_decimal(const std::vector<HeaderLine>& head, const std::string& file, const ReadOptions& options, TableShape& shape) {
   const std::size_t line = head[shape.first_data].number;
   const DecimalSigns signs = decimal_signs(head, shape);
-  if (shape.delimiter == ',' && signs.commas == 0) { // otherwise numbers are quoted
+  if (shape.delimiter == ',' && signs.commas == 0) { // if unquoted numbers contain no comma; otherwise numbers are quoted
     const bool may_join = may_be_pairs(head, shape);
     const bool is_as_named = !shape.names.empty() && shape.names.size() == shape.width;
     if (options.decimal == ',') {
@@ -160,7 +160,7 @@ bool is_units_row(const Fields& fields) {
 }
 
 // Returns true if the fields are names of columns: words, none of which is a number. With blanks as delimiter a sentence looks similar, so
-// half of the words must be known.
+// half of the words must be known names.
 bool is_names_row(const Fields& fields, char delimiter) {
   if (std::any_of(fields.begin(), fields.end(), [](std::string_view f) { return is_number(f) || is_stamp(f); })) return false;
   const auto known = static_cast<std::size_t>(
@@ -192,7 +192,7 @@ void take_names(const Fields& fields, std::vector<std::string>& texts) {
   for (const std::string_view field : fields) texts.emplace_back(field);
 }
 
-// Searches names and units in the last lines before the data, or in the last comments.
+// Searches names and units of columns in the last lines before the data, or in the last comments.
 void find_names(const std::vector<HeaderLine>& head, const std::string& file, std::size_t row_width, TableShape& shape) {
   Fields fields;
   for (const bool in_comments : {false, true})
@@ -204,7 +204,8 @@ void find_names(const std::vector<HeaderLine>& head, const std::string& file, st
       if (!split_fields(text, shape.delimiter, fields) || fields.empty()) continue;
       const std::size_t numbers = static_cast<std::size_t>(std::count_if(fields.begin(), fields.end(), is_number));
       const bool is_key =
-          !begins_like_number(fields.front()) && fields.front().find_first_of(":=") != std::string_view::npos; // such as "Rate: 100 Hz"
+          // a line such as "Rate: 100 Hz"
+          !begins_like_number(fields.front()) && fields.front().find_first_of(":=") != std::string_view::npos;
       if (!in_comments && back == 1 && !is_key && numbers > 0 && 2 * (numbers + 1) >= fields.size() && fields.size() >= row_width)
         throw RecordError(file, line.number, 1,
                           "This line before the first row holds both words and numbers: '" + shown(line.text.substr(0, 40)) +
@@ -223,9 +224,9 @@ void find_names(const std::vector<HeaderLine>& head, const std::string& file, st
 }
 
 // Returns the number of fields of the longest rows. Some recorders add columns without a name, for slow sensors, to some of their rows. A
-// single long row may be two rows that ran together.
+// single long row may be two joined rows and is ignored.
 std::size_t most_fields(const std::vector<HeaderLine>& head, const TableShape& shape) {
-  constexpr std::size_t k_regular = 3; // rows
+  constexpr std::size_t k_regular = 3; // least number of long rows that count
   std::map<std::size_t, std::size_t> rows_with;
   Fields fields;
   for (std::size_t i = shape.first_data; i < head.size(); ++i)
@@ -242,7 +243,7 @@ bool leaves_columns_unnamed(const std::vector<HeaderLine>& head, const TableShap
          family_of({head.begin(), head.begin() + static_cast<std::ptrdiff_t>(shape.first_data)}) == "Gulf Coast Data Concepts";
 }
 
-// Files in blocks mark the begin of rows, for example with "*DATA".
+// Returns the line after the mark of files in blocks, for example "*DATA"; 0 without a mark.
 std::size_t begin_of_data(const std::vector<HeaderLine>& head) {
   for (std::size_t i = 0; i < head.size(); ++i)
     if (lower_case(trimmed_blanks(head[i].text)) == "*data") return i + 1;
@@ -324,7 +325,8 @@ TableShape find_shape(const std::vector<HeaderLine>& head, const std::string& fi
                                      "CSV; if another sign parts the columns, give --delimiter.");
   shape.first_data = first;
   static_cast<void>(split_fields(head[first].text, shape.delimiter, fields));
-  while (shape.width > 1 && fields.back().empty()) fields.pop_back(), --shape.width; // delimiters at the end of rows
+  // Omits empty fields after delimiters at the end of rows.
+  while (shape.width > 1 && fields.back().empty()) fields.pop_back(), --shape.width;
   find_names(head, file, shape.width, shape);
   settle_decimal(head, file, options, shape);
   if (!shape.names.empty()) {

@@ -15,13 +15,13 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_year_2200 = 7.258e9;   // s since 1970; until then nanoseconds fit into 64 bits
-constexpr std::size_t k_most_rows = 4000; // rows of the head that are examined
+constexpr double k_year_2200 = 7.258e9;   // latest time, s since 1970; until then nanoseconds fit into 64 bits
+constexpr std::size_t k_most_rows = 4000; // number of rows of the head that are examined
 
 /// Fields of one column in the first rows.
 struct ColumnHead {
   std::vector<std::string> texts;
-  std::vector<std::size_t> lines, columns; ///< positions in the file
+  std::vector<std::size_t> lines, columns; ///< lines and columns of the fields in the file
 };
 
 ColumnHead head_of_column(const std::vector<HeaderLine>& head, const TableShape& shape, std::size_t column) {
@@ -80,7 +80,7 @@ private:
     if (options_.time) {
       base_.column = column_of(shape_, *options_.time, "--time", layout_.file);
       has_time_ = true;
-    } else if (shape_.names.empty()) { // without names axes are found by position, and a date in the first column is the time
+    } else if (shape_.names.empty()) { // without names: a date in the first column is the time
       has_time_ = std::none_of(layout_.axes.begin(), layout_.axes.end(), [](const AxisColumn& axis) { return axis.column == 0; });
       const ColumnHead first = head_of_column(head_, shape_, 0);
       if (has_time_ && !first.texts.empty() && parse_number(first.texts.front(), shape_.decimal))
@@ -118,7 +118,7 @@ private:
     bool has_dates = false;
     for (std::size_t i = 0; i < first_.texts.size(); ++i) {
       const unsigned orders = possible_date_orders(first_.texts[i]);
-      if (orders == 0 && parse_stamp(first_.texts[i], k_year_first)) continue; // a time of day
+      if (orders == 0 && parse_stamp(first_.texts[i], k_year_first)) continue; // a time of day fits every order
       if (orders == 0)
         fail(i, "'" + shown(first_.texts[i]) +
                     "' is neither a number nor a date or time that is understood. Write times as 2016-01-31 12:00:00.000, or choose "
@@ -173,19 +173,21 @@ private:
     settle_unit(unit, source);
   }
 
-  // Returns a suggestion for the unit of numbers of this size; "" if there is none.
+  // Returns a suggestion for the unit of the numbers, according to their magnitude; "" if there is none.
   std::string likely_unit() const {
     const double value = numbers_.front();
     const std::pair<double, const char*> epochs[] = {
         {1.0, "epoch"}, {1e-3, "\"epoch ms\""}, {1e-6, "\"epoch us\""}, {1e-9, "\"epoch ns\""}};
     for (const auto& [factor, unit] : epochs)
       if (value * factor > 9.4e8 && value * factor < 2.6e9)
-        return std::string(" Numbers of this size are often times since 1970: that is --time-unit ") + unit + "."; // years 1999 to 2052
+        // Suggested for the years 1999 to 2052.
+        return std::string(" Numbers of this size are often times since 1970: that is --time-unit ") + unit + ".";
     return is_size_of_days() ? " Numbers of this size are often the days of a spreadsheet: that is --time-unit days." : "";
   }
-  bool is_size_of_days() const { return numbers_.front() > 20000.0 && numbers_.front() < 80000.0; } // years 1954 to 2119
+  // Corresponds to the years 1954 to 2119.
+  bool is_size_of_days() const { return numbers_.front() > 20000.0 && numbers_.front() < 80000.0; }
 
-  // Returns the unit used by the recorder's family, or the unit for which the times agree with the sampling rate in the header.
+  // Returns the unit that the recorder's family uses, or the unit for which the times agree with the sampling rate in the header.
   std::string unit_by_family_or_rate(std::string& source) const {
     source = "the family of the recorder";
     if (layout_.family == "Gulf Coast Data Concepts") return "s";
@@ -222,7 +224,7 @@ private:
     else if (base_.is_relative) base_.start = stamp_text(static_cast<std::int64_t>(std::llround(since_1970 * 1e6)) * 1000) + " UTC";
   }
 
-  // Returns the median of the forward steps of the first times, in their own unit.
+  // Returns the median of the forward steps of the first times, in the unit of the numbers.
   double typical_step() const {
     std::vector<double> steps;
     for (std::size_t i = 1; i < numbers_.size(); ++i)
@@ -252,7 +254,7 @@ private:
   }
 
   void find_rate() {
-    const double by_times = has_time_ ? rate_by_times().value_or(0.0) : 0.0; // 0: unknown
+    const double by_times = has_time_ ? rate_by_times().value_or(0.0) : 0.0; // rate from the times, Hz; 0: unknown
     if (options_.rate) {
       base_.rate = *options_.rate;
       base_.rate_text = "--rate";
@@ -277,9 +279,9 @@ private:
                             ") is none that a recorder has. Give --rate HZ or --time-unit.");
   }
 
-  // Computes the rate from the intervals without gaps, divided by the time that they take. If the file counts samples and some are missing,
-  // the counter is used. A step with missing rows counts as its length in intervals. Without such steps the mean is exact even if times are
-  // rounded.
+  // Returns the sampling rate, Hz, as the number of intervals without gaps divided by their total time. If the file counts samples and some
+  // are missing, the counter is used. A step with missing rows counts as its length in intervals. Without such steps the mean is exact even
+  // if times are rounded.
   std::optional<double> rate_by_times() const {
     const std::vector<double> times = head_times();
     std::vector<double> steps, usual;
@@ -291,7 +293,8 @@ private:
     const double median = usual[usual.size() / 2];
     if (base_.index_column)
       if (const auto rate = rate_by_index(times)) return rate;
-    constexpr double k_hole = 1.5, k_rare = 0.1; // longer steps indicate missing rows if they are rare; otherwise the clock jitters
+    // Step, relative to the usual one, above which rows are missing; more frequent long steps (share k_rare) are clock jitter.
+    constexpr double k_hole = 1.5, k_rare = 0.1;
     double regular = 0.0, count = 0.0, all = 0.0;
     for (const double step : steps) {
       if (step <= k_hole * median) regular += step, count += 1.0;

@@ -11,7 +11,7 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// Parses digits at the front. Returns false if there are fewer than `least` or more than `most`.
+// Parses digits at the front of the text. Returns false if there are fewer than `least` or more than `most`.
 bool take_digits(std::string_view& text, std::size_t least, std::size_t most, int& value, std::size_t& count) {
   value = 0;
   for (count = 0; count < text.size() && is_digit(text[count]) && count < most; ++count) value = value * 10 + (text[count] - '0');
@@ -20,7 +20,7 @@ bool take_digits(std::string_view& text, std::size_t least, std::size_t most, in
   return true;
 }
 
-// Parses a month's name at the front and returns 1 to 12.
+// Parses a month's name at the front of the text. Returns 1 to 12; 0 if there is none.
 int take_month_name(std::string_view& text) {
   constexpr std::array<const char*, 12> k_months = {"jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"};
   std::size_t letters = 0;
@@ -54,13 +54,13 @@ std::int64_t days_since_1970(int year, int month, int day) {
 }
 
 struct DateParts {
-  int first = 0, second = 0, third = 0; ///< in the order of the text; a month's name as its number
+  int first = 0, second = 0, third = 0; ///< numbers in the order of the text; a month's name as its number
   std::size_t first_digits = 0, third_digits = 0;
   int named = 0; ///< position (1 or 2) of a month's name; 0: none
   char separator = 0;
 };
 
-// Parses the three parts of a date at the front.
+// Parses the three parts of a date at the front of the text.
 std::optional<DateParts> take_date(std::string_view& text) {
   DateParts parts;
   std::size_t count = 0;
@@ -116,7 +116,7 @@ unsigned orders_of(const DateParts& parts) {
   return orders;
 }
 
-// Parses hh:mm[:ss[.fraction]] [AM|PM] at the front.
+// Parses hh:mm[:ss[.fraction]] [AM|PM] at the front of the text.
 bool take_clock(std::string_view& text, std::int64_t& ns) {
   int hour = 0, minute = 0, second = 0;
   std::size_t count = 0;
@@ -148,7 +148,7 @@ bool take_clock(std::string_view& text, std::int64_t& ns) {
   return true;
 }
 
-// Parses Z, UTC, +hh:mm, +hhmm, +hh. Returns the offset from UTC.
+// Parses Z, UTC, +hh:mm, +hhmm, +hh. `ahead_ns` receives the offset from UTC, ns.
 bool take_zone(std::string_view& text, std::int64_t& ahead_ns) {
   ahead_ns = 0;
   if (text == "Z" || text == "z" || text == "UTC" || text == "GMT") {
@@ -211,7 +211,7 @@ std::string stamp_text(std::int64_t ns) {
     rest += k_day_ns;
     --days;
   }
-  // Converts days to a date by the same eras.
+  // Converts days since 1970 to a date, by the eras of days_since_1970().
   const std::int64_t z = days + 719468, era = z / 146097, of_era = z - era * 146097;
   const std::int64_t year_of_era = (of_era - of_era / 1460 + of_era / 36524 - of_era / 146096) / 365;
   const std::int64_t of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100), shifted = (5 * of_year + 2) / 153;

@@ -12,11 +12,11 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_newton = 100;
-constexpr double k_tolerance = 1e-11;       // on z + ∇h(η), in units of the capacity
-constexpr double k_gauge_tolerance = 1e-10; // on the direction; the error of u is of the order of its square
-constexpr double k_rank = 1e-12;            // relative to the largest eigenvalue of A: smaller ones are zero
-constexpr double k_touches = 1e-12;         // relative excess of a load over the bound that is below the tolerance
-constexpr double k_no_slip = 1e-15;         // relative to b: a smaller η is the rounding error of b + A z
+constexpr double k_tolerance = 1e-11;       // tolerance of |z + ∇h(η)|, in units of the capacity
+constexpr double k_gauge_tolerance = 1e-10; // tolerance of the direction; the error of u is of the order of its square
+constexpr double k_rank = 1e-12;            // eigenvalues of A below this fraction of the largest count as zero
+constexpr double k_touches = 1e-12;         // relative excess of a load over the bound that counts as none
+constexpr double k_no_slip = 1e-15;         // η below this fraction of b is the rounding error of b + A z
 
 /// Pseudo-inverse of a symmetric positive semidefinite matrix, and the projector onto its range.
 struct Inverse {
@@ -66,12 +66,11 @@ Point start_on_ray(const ScaledPatch& patch, const Mat3& a, const Vec3& b, const
   const Vec3 n = exit.y, along = inverse.inverse * n;
   const double used = z0.norm() * exit.value; // n·z0 / h(n) > 1
   const double lambda = n.dot(z0) * (1 - 1 / used) / n.dot(along);
-  // among the wrenches that hold b, start from the one with the smallest utilisation
+  // Starts from the wrench with the smallest utilisation among those that cancel b.
   Vec3 z = z0.norm() * exit.wrench - lambda * along;
   const Vec3 eta = -lambda * n;
   for (int i = 0; i < 2; ++i)
-    z += inverse.inverse * (eta - b - a * z); // corrects z so that b + A z = η up to rounding, although η is
-                                              // small compared with b
+    z += inverse.inverse * (eta - b - a * z); // corrects z so that b + A z = η up to rounding, although η is small compared with b
   return point_at(patch, z, eta, evaluations);
 }
 
@@ -115,7 +114,7 @@ AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility, con
 
   Gauge need;
   if (holdable) {
-    // Takes the wrench with the smallest utilisation of all that hold b.
+    // Finds the wrench with the smallest utilisation among those that cancel b.
     need = find_gauge(scaled, z0 / size, Vec3::Zero(), k_gauge_tolerance, inverse.range);
     out.evaluations = need.evaluations;
     out.residual = need.residual;
@@ -125,8 +124,8 @@ AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility, con
       return out;
     }
   }
-  // At the bound η is the rounding error of b + A z and has no direction for Newton's method. The wrench on the bound then has this
-  // relative error, and the slip is along the normal there.
+  // If the load is at the bound, η is the rounding error of b + A z and has no direction for Newton's method. The result is then the wrench
+  // on the bound, with this relative error, and a slip along the normal there.
   if (holdable && size * need.value - 1 <= k_touches) {
     out.slips = true;
     out.wrench = scaled.wrench(need.wrench / need.value);
@@ -137,17 +136,18 @@ AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility, con
   Point other = p;
   if (holdable) {
     const Point q = start_on_ray(scaled, a, b, inverse, z0, need, out.evaluations);
-    // At the bound the values differ by rounding only, but the point on the ray is the solution.
+    // At the bound the values differ only by rounding, but the point on the ray is the solution.
     const bool is_solved = q.residual().norm() <= k_tolerance;
     (is_solved || q.value(b) < p.value(b) ? p : other) = q;
   }
   out.converged = minimise(scaled, a, b, p, out.evaluations);
-  if (!out.converged) { // the dual is convex, so any other start leads to the same point
+  if (!out.converged) { // second start: the dual is convex, so every start leads to the same point
     out.converged = minimise(scaled, a, b, other, out.evaluations);
     if (out.converged || other.residual().norm() < p.residual().norm()) p = other;
   }
   out.residual = p.residual().norm();
-  // Beyond the bound by rounding only, η cannot be determined from b + A z; holding at the bound is then closer than any slip found.
+  // If the bound is exceeded only by rounding, η cannot be determined from b + A z; sticking at the bound is then more accurate than any
+  // slip found.
   if (!out.converged && holdable && size * need.value - 1.0 < out.residual) {
     out.residual = size * need.value - 1.0;
     out.wrench = scaled.wrench(Vec3(need.wrench / need.value));

@@ -19,16 +19,16 @@
 namespace steplap {
 
 struct AdmissibleWrench {
-  Vec3 wrench = Vec3::Zero();       ///< W on b, about the patch's reference [N, N, N m]
-  Vec3 acceleration = Vec3::Zero(); ///< η = A W + b [m/s², m/s², rad/s²]; zero when it sticks
+  Vec3 wrench = Vec3::Zero();       ///< W on b about the patch's reference, N, N, N m
+  Vec3 acceleration = Vec3::Zero(); ///< η = A W + b, m/s², m/s², rad/s²; zero if the joint sticks
   bool slips = false;
   int evaluations = 0; ///< number of evaluations of h
-  double residual = 0; ///< of the optimality condition, relative to the capacity
+  double residual = 0; ///< residual of the optimality condition, relative to the capacity
   bool converged = true;
 };
 
 /// Solves the problem. `warm`, if not zero, is an initial slip direction. An empty patch gives W = 0, slipping along b. If A is singular
-/// several wrenches may hold b; then the sticking W is the one with the smallest utilisation.
+/// several wrenches may cancel b; the sticking W is then the one with the smallest utilisation.
 [[nodiscard]] AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility, const Vec3& free_acceleration,
                                                  const Vec3& warm = Vec3::Zero());
 

@@ -8,14 +8,14 @@
 
 namespace steplap {
 
-/// Corners of all rings, one ring after another; edge i starts at corner i.
+/// Corners of all rings of a polygon, one ring after another; edge i starts at corner i.
 struct Boundary {
   struct Span {
     std::size_t first = 0, count = 0;
   };
   Ring corners;
   std::vector<Span> rings;
-  std::vector<std::size_t> next; ///< per corner: the next one around its ring
+  std::vector<std::size_t> next; ///< per corner: index of the next corner of its ring
 };
 
 /// Returns the boundary of a polygon: outer ring first, then the holes.

@@ -9,16 +9,16 @@ namespace steplap {
 
 namespace {
 
-/// An edge seen from c: distance and abscissae relative to the foot of the perpendicular, and the differences between its ends needed by
-/// the antiderivatives.
+/// An edge relative to c: distance of its line, abscissae of its ends from the foot of the perpendicular, their distances, and the
+/// differences that the antiderivatives need.
 struct EdgeView {
   double d, s1, s2, rho1, rho2;
   double log_term; ///< Λ = ∫ ds/ρ
   double d_rho;    ///< ρ₂ − ρ₁
 };
 
-/// Returns 2 atanh(x) = 2x (1 + x²/3 + x⁴/5 …) for |x| ≤ (√2−1)/(√2+1) = 0.1716, summed in pairs to shorten the dependency chain. The first
-/// omitted term is x²⁰/21 < 3e-17 relative.
+/// Returns 2 atanh(x) = 2x (1 + x²/3 + x⁴/5 …) for |x| ≤ (√2−1)/(√2+1) = 0.1716. Terms are summed in pairs to shorten the dependency chain.
+/// The first omitted term is x²⁰/21 < 3e-17 relative.
 constexpr double k_series_limit = 0.1715;
 double twice_atanh(double x) {
   const double y = x * x, y2 = y * y, y4 = y2 * y2;
@@ -66,7 +66,7 @@ void complete(EdgeView& e, double length) {
   e.log_term = x < k_series_limit ? twice_atanh(x) : log_term(e);
 }
 
-/// Components of ∬(I−uuᵀ)/|r| in the axes of the edge (m, t), to be rotated to x, y.
+/// Components of ∬(I−uuᵀ)/|r| in the axes of the edge (m, t).
 struct EdgeCurvature {
   double mm, mt, tt;
 };
@@ -78,7 +78,7 @@ void add_turned(CentreIntegrals& out, const Vec2& t, const EdgeCurvature& k) {
   out.xy += k.mm * mx * my + k.mt * (mx * ty + my * tx) + k.tt * tx * ty;
 }
 
-/// Uniform part of the traction: w × integrals of degree 1, 0, −1.
+/// Adds the uniform part of the traction: w × integrals of degree 1, 0, −1.
 template <bool WithCurvature> void add_uniform(CentreIntegrals& out, const EdgeView& e, const Vec2& t, double length, double w) {
   const double d = e.d, wd = w * d, s = e.s1 + e.s2;
   const double s_rho = 0.5 * (e.d_rho * s + length * (e.rho1 + e.rho2)); // s₂ρ₂ − s₁ρ₁
@@ -94,7 +94,7 @@ template <bool WithCurvature> void add_uniform(CentreIntegrals& out, const EdgeV
   }
 }
 
-/// Part of the traction proportional to β·r, r from c: degrees 2, 1, 0.
+/// Adds the part of the traction proportional to β·r, with r from c: degrees 2, 1, 0.
 template <bool WithCurvature> void add_linear(CentreIntegrals& out, const EdgeView& e, const Vec2& t, double length, const Vec2& beta) {
   const double d = e.d;
   const double bm = d * (beta.x() * t.y() - beta.y() * t.x()), bt = beta.dot(t);
@@ -119,7 +119,7 @@ template <bool WithCurvature> void add_linear(CentreIntegrals& out, const EdgeVi
 
 template <bool WithCurvature>
 CentreIntegrals integrate_about(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& c) {
-  // An edge whose line passes c at a smaller distance contributes nothing that a double could represent.
+  // Edges whose line passes c within this distance are skipped: their contribution is below the range of a double.
   constexpr double no_foot = 1e-140;
   CentreIntegrals out;
   const double w = traction.at_centroid + traction.gradient.dot(c); // traction at c

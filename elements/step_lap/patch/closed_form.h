@@ -8,8 +8,8 @@
 //   ∬ r/|r| dA         = Σ d/2 [t(ρ₂−ρ₁) + d m Λ]
 //   ∬ (I−uuᵀ)/|r| dA   = Σ d [m mᵀ(Λ−Δ(s/ρ)) + t tᵀ Δ(s/ρ) + d(m tᵀ+t mᵀ) Δ(1/ρ)],  u = r/|r|,
 //
-// and the same with a factor β·r for a linear pressure. Derivation: docs/explanation/limit_surface.md. Rounding errors grow like |c|²/area;
-// for c beyond k_far_ratio radii use far_field.h.
+// and corresponding forms with a factor β·r for a linear pressure. Derivation: docs/explanation/limit_surface.md. Rounding errors grow like
+// |c|²/area; for c beyond k_far_ratio radii far_field.h is used instead.
 #pragma once
 
 #include "elements/step_lap/patch/polygon.h"
@@ -19,8 +19,8 @@ namespace steplap {
 /// An edge of a piece, relative to the piece's centroid.
 struct PatchEdge {
   Vec2 start{0, 0};
-  Vec2 along{1, 0};  ///< unit
-  double length = 0; ///< [m], > 0
+  Vec2 along{1, 0};  ///< unit vector along the edge
+  double length = 0; ///< length [m], > 0
   bool opens_ring = false;
 };
 
@@ -30,14 +30,14 @@ struct Traction {
   Vec2 gradient{0, 0};
 };
 
-/// Integrals of traction × (|r|, r/|r|, (I−uuᵀ)/|r|) over the piece, r from the centre of rotation.
+/// Integrals of traction × (|r|, r/|r|, (I−uuᵀ)/|r|) over a piece, with r from the centre of rotation.
 struct CentreIntegrals {
   double distance = 0;           ///< ∬ w |r| dA [N m]
   Vec2 direction{0, 0};          ///< ∬ w r/|r| dA [N]
   double xx = 0, xy = 0, yy = 0; ///< ∬ w (I−uuᵀ)/|r| dA [N/m]
 };
 
-/// Computes the closed form for the centre of rotation `c` relative to the piece's centroid, which may be anywhere, also on an edge or a
+/// Computes the integrals for the centre of rotation `c`, relative to the piece's centroid, which may be anywhere, also on an edge or a
 /// vertex. Second derivatives are computed only with `WithCurvature`, otherwise zero.
 template <bool WithCurvature>
 [[nodiscard]] CentreIntegrals integrate_about(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& c);

@@ -67,13 +67,13 @@ public:
     for (std::size_t i = 0; i < a.count; ++i) links_.push_back({corner(a, i, false), next(i, a.count), i == 0 ? a.count - 1 : i - 1});
   }
 
-  /// Moves to the corner farthest outside. Consecutive clipping lines turn to the left, and so does this corner.
+  /// Moves to the corner farthest outside. Consecutive clipping lines turn to the left, and this corner moves in the same sense.
   void go_out(const Cutter& by, bool is_first) {
     double d = by.inwards(at(here_));
     if (is_first)
       for (std::size_t i = 1; i < links_.size(); ++i)
         if (const double there = by.inwards(at(i)); there < d) d = there, here_ = i;
-    while (true) { // continues past sides so short that rounding hides their direction
+    while (true) { // continues past very short sides, whose direction is rounding
       const std::size_t one = links_[here_].next, two = links_[one].next;
       const double d_one = by.inwards(at(one)), d_two = by.inwards(at(two));
       if (!(std::min(d_one, d_two) < d)) return;
@@ -131,7 +131,7 @@ void clip_many(const RingView& a, const RingView& b, ClipWorkspace& w) {
 void drop_sides_without_length(std::vector<Corner>& ring) {
   const std::size_t n = ring.size();
   std::size_t kept = 0;
-  const Vec2 first = n > 0 ? ring[0].at : Vec2::Zero(); // may be overwritten before the last side is tested
+  const Vec2 first = n > 0 ? ring[0].at : Vec2::Zero(); // copied, because it may be overwritten before the last side is tested
   for (std::size_t i = 0; i < n; ++i)
     if (ring[i].at != (i + 1 == n ? first : ring[i + 1].at)) ring[kept++] = ring[i];
   ring.resize(kept);

@@ -1,4 +1,4 @@
-// Clipping of one convex ring by another, whose edges keep their origin, and the largest gap between two rings.
+// Clipping of one convex ring by another, with the origin of each edge, and the largest gap between two rings.
 //
 // Rings with few corners are clipped edge by edge. For many corners, consecutive edges of one ring cut the other at positions that follow
 // each other around it; following them takes n + m steps instead of n·m. Both methods compute the corners of a cut by the same arithmetic.
@@ -17,7 +17,7 @@ struct Corner {
   bool is_second = false;
 };
 
-/// Product of the numbers of corners from which two rings are treated by the second method.
+/// From this product of the numbers of corners on, two rings are clipped by following the cuts.
 inline constexpr std::size_t k_many_corners = 400;
 
 /// Scratch memory, reused by repeated calls.
@@ -38,11 +38,11 @@ struct RingView {
   std::size_t count = 0;
 };
 
-/// Sets w.ring to a ∩ b without sides of zero length; fewer than three corners mean no area.
+/// Sets w.ring to a ∩ b, without sides of zero length; a result with fewer than three corners has no area.
 void clip(const RingView& a, const RingView& b, ClipWorkspace& w);
 
-/// Returns the largest, over the edges of `ring`, of the signed distance of the nearest corner of `other` (positive outwards). A positive
-/// value means that the edge separates them. The search stops at `enough`.
+/// Returns the largest signed distance, over the edges of `ring`, of the nearest corner of `other` (positive outwards), m. A positive value
+/// means that the edge separates the rings. The search stops when `enough` is reached.
 [[nodiscard]] double widest_gap(const RingView& ring, const RingView& other, double enough = std::numeric_limits<double>::infinity());
 
 } // namespace steplap

@@ -9,11 +9,11 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_straight = 1e-9; // rad: corners with a smaller angle count as straight
+constexpr double k_straight = 1e-9; // rad: corners whose angle deviates from π by less count as straight
 
-/// One side of a part during merging: half of an edge or of a cut.
+/// One side of a part during merging: one of the two directed halves of an edge or of a cut.
 struct Half {
-  std::size_t from = 0;           ///< vertex of the polygon
+  std::size_t from = 0;           ///< start vertex in the polygon
   std::size_t next = 0, prev = 0; ///< neighbouring halves of the same part
   std::size_t twin = 0;
   bool has_twin = false, is_gone = false;
@@ -24,7 +24,7 @@ public:
   explicit Merger(const Polygon& polygon) {
     add_ring(polygon.outer);
     for (const Ring& hole : polygon.holes) add_ring(hole);
-    std::map<std::array<std::size_t, 2>, std::size_t> waiting; // halves waiting for their twin, by their end points
+    std::map<std::array<std::size_t, 2>, std::size_t> waiting; // halves whose twin is not found yet, by start and end vertex
     for (const auto& t : triangulated(polygon))
       for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t h = halves_.size(), first = h - i;
@@ -40,7 +40,7 @@ public:
       }
   }
 
-  /// Removes the cuts that are not necessary, in the order of their length.
+  /// Removes the cuts that convexity does not require, in the order of their length.
   void merge(bool longest_first) {
     std::vector<std::pair<double, std::size_t>> cuts;
     for (std::size_t h = 0; h < halves_.size(); ++h)
@@ -74,8 +74,8 @@ public:
 private:
   void add_ring(const Ring& ring) { points_.insert(points_.end(), ring.begin(), ring.end()); }
 
-  /// Returns true if the corner at the start of this half would remain convex without it and its twin. It must not be straight: clipping
-  /// could not distinguish two collinear sides.
+  /// Returns true if the corner at the start of this half remains convex after removing the half and its twin. A straight corner does not
+  /// count, because clipping could not distinguish two collinear sides.
   [[nodiscard]] bool turns_left(std::size_t h) const {
     const Vec2& a = points_[halves_[halves_[h].prev].from];
     const Vec2& b = points_[halves_[h].from];

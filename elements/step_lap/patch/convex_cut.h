@@ -22,7 +22,7 @@ struct Box {
 
 /// One convex part of a polygon.
 struct ConvexPart {
-  std::size_t first = 0, count = 0; ///< range of the cut's corners
+  std::size_t first = 0, count = 0; ///< range of indices in ConvexCut::corners
   Box box;
 };
 
@@ -36,7 +36,7 @@ struct ConvexCut {
 /// Returns the convex parts. Precondition: the polygon comes from repaired(). Throws PolygonError if the exact kernel rejects it.
 [[nodiscard]] ConvexCut cut_into_convex(const Polygon& polygon);
 
-/// Returns a convex ring as a single part.
+/// Returns a convex ring as a division into a single part.
 [[nodiscard]] ConvexCut uncut(const Ring& ring);
 
 /// Returns the bounding box of `count` points.

@@ -9,9 +9,9 @@ namespace steplap {
 
 namespace {
 
-using Two = Eigen::Array2d; // two nodes at once
+using Two = Eigen::Array2d; // values at two nodes
 
-constexpr int k_most = 10; // nodes along a side at k_far_ratio radii
+constexpr int k_most = 10; // largest number of nodes along a side, needed at k_far_ratio radii
 
 /// Nodes in pairs; an odd number is completed by a node with zero weight.
 struct PairedRule {
@@ -38,7 +38,7 @@ const std::array<PairedRule, k_most + 1>& rules() {
   return all;
 }
 
-/// Returns the smallest n with x^(2n−3−more)/4ⁿ below 2^-57, from the binary exponent of x⁴: x < 2^(-k/4).
+/// Returns the smallest n with x^(2n−3−more)/4ⁿ below 2^-57. The binary exponent of x⁴ bounds x: x < 2^(-k/4).
 int nodes_at(double x, int more) {
   constexpr int bits = 57;
   if (x < 0x1p-57) return 2 + more;
@@ -54,7 +54,7 @@ const bool has_three_operands = __builtin_cpu_supports("avx") != 0;
 
 double spin(double a_x, double a_y, double b_x, double b_y) { return a_x * b_y - a_y * b_x; }
 
-/// Integrals over quadrilaterals for one twist about the piece's centroid.
+/// Sums integrals over quadrilaterals for one twist about the piece's centroid.
 template <bool WithCurvature> class Integral {
 public:
   Integral(const Traction& traction, double radius, const Vec2& v, double omega)
@@ -82,7 +82,7 @@ private:
   }
 
 #if defined(__x86_64__)
-  // The same operations compiled for AVX, whose three-operand instructions save copies.
+  // add() compiled for AVX, whose three-operand instructions save copies; results are bit-identical.
   template <bool IsUniform>
   [[gnu::target("avx")]] void add_by_three_operands(const Vec2& p0, const Vec2& p1, const Vec2& p2, const Vec2& p3) {
     add_quadrilateral<IsUniform>(p0, p1, p2, p3);
@@ -143,7 +143,7 @@ private:
 
   // Adds e⊥e⊥ᵀ/|V| with e⊥ = ẑ×V/|V|, and for ω e⊥·(ẑ×r) = r·v/|V|. V = a + t b, r·v = r0 + t r1.
   void add_curvature(const Vec2& a, const Vec2& b, double r0, double r1, double c0, double c1, double c2) {
-    const double x0 = a.x() * c0 + b.x() * c1, x1 = a.x() * c1 + b.x() * c2; // Σ of V_x, V_x t
+    const double x0 = a.x() * c0 + b.x() * c1, x1 = a.x() * c1 + b.x() * c2; // sums over nodes of V_x and V_x t
     const double y0 = a.y() * c0 + b.y() * c1, y1 = a.y() * c1 + b.y() * c2;
     out_.xx += a.y() * y0 + b.y() * y1;
     out_.xy -= a.x() * y0 + b.x() * y1;

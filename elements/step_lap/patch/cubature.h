@@ -24,8 +24,8 @@ template <bool WithCurvature>
 [[nodiscard]] PieceDissipation integrate_far(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius,
                                              const Vec2& v, double omega);
 
-/// The same, without curvature, for a polygon about any centre. `radius`: of a circle about the centre that contains the polygon; the
-/// traction is given at the centre.
+/// As above without curvature, for a polygon about any centre. `radius`: radius of a circle about the centre that contains the polygon;
+/// `traction`: given at the centre.
 [[nodiscard]] PieceDissipation integrate_far(const Polygon& polygon, const Vec2& centre, const Traction& traction, double radius,
                                              const Vec2& v, double omega);
 

@@ -58,11 +58,12 @@ std::optional<std::array<std::size_t, 4>> clash_within(const Ring& r, std::size_
   return std::nullopt;
 }
 
-/// Rings of a polygon as repaired() leaves them, holes clockwise: the interior is on the left of every edge.
+/// Rings of a polygon after repaired(): the outer ring counter-clockwise, holes clockwise, so that the interior is on the left of every
+/// edge.
 using ExactRings = std::vector<ExactRing>;
 
 ExactRing exact_ring(const Ring& ring, const Pose& pose) {
-  // The affine map itself is exact, so a simple ring stays simple whatever the rounding of sine and cosine.
+  // The affine map itself is evaluated exactly, so a simple ring stays simple whatever the rounding of sine and cosine.
   const portable::SinCos turn = portable::sin_cos(pose.theta);
   const Exact::FT c(turn.cos), s(turn.sin), x(pose.x), y(pose.y);
   const bool moved = pose.theta != 0;
@@ -88,7 +89,7 @@ struct ExactEdge {
   }
 };
 
-#if CGAL_VERSION_NR >= 1060000000 // 6.0 gives a variant of the standard library, 5 one of Boost
+#if CGAL_VERSION_NR >= 1060000000 // from CGAL 6.0 on the result is a std::variant, before a boost::variant
 template <class Alternative, class Meeting> const Alternative* as(const Meeting& meeting) { return std::get_if<Alternative>(&meeting); }
 #else
 template <class Alternative, class Meeting> const Alternative* as(const Meeting& meeting) { return boost::get<Alternative>(&meeting); }
@@ -106,8 +107,8 @@ void add_meeting(const ExactEdge& a, const ExactEdge& b, std::vector<ExactPoint>
   }
 }
 
-/// Returns the edges of some rings, divided wherever edges of other rings meet them. Afterwards no two edges cross, and those that overlap
-/// are equal or reversed.
+/// Returns the edges of `rings`, divided wherever edges of `others` meet them. Afterwards no two edges cross, and overlapping ones are
+/// equal or reversed.
 std::vector<ExactEdge> cut_edges(const ExactRings& rings, const ExactRings& others) {
   std::vector<ExactEdge> out;
   std::vector<ExactPoint> stations;
@@ -141,7 +142,7 @@ bool is_within(const ExactPoint& p, const ExactRings& rings) {
 
 ExactPoint middle(const ExactEdge& e) { return CGAL::midpoint(e.from, e.to); }
 
-/// Adds the edges of one polygon that are inside the other (`wanted`) or outside it.
+/// Adds the edges of one polygon that are inside the other polygon (`wanted`) or outside it.
 void keep_apart(const std::vector<ExactEdge>& edges, const std::set<ExactEdge>& of_other, const ExactRings& other, bool wanted,
                 bool reverse, std::vector<ExactEdge>& out) {
   for (const ExactEdge& e : edges) {
@@ -163,7 +164,8 @@ std::vector<ExactEdge> boundary(const ExactRings& a, const ExactRings& b, bool w
   return out;
 }
 
-/// Returns, of the edges that start where one arrives, the one that bounds the same piece: the first clockwise from the reverse direction.
+/// Returns, among the edges that start where `arriving` ends, the one that bounds the same piece: the first clockwise from the reverse
+/// direction.
 std::size_t going_on(const ExactEdge& arriving, const std::vector<std::size_t>& candidates, const std::vector<ExactEdge>& edges) {
   const Exact::Direction_2 back(Exact::Vector_2(arriving.to, arriving.from));
   const auto direction = [&](std::size_t i) { return Exact::Direction_2(Exact::Vector_2(edges[i].from, edges[i].to)); };
@@ -211,7 +213,7 @@ Exact::FT twice_area(const ExactRing& ring) {
   return sum;
 }
 
-/// Returns the nearest double. to_double() without exact() may return the middle of an interval as wide as 1e-5, as occurs for
+/// Returns the nearest double. Without exact(), to_double() may return the middle of an interval as wide as 1e-5, as occurs for
 /// intersections of nearly parallel edges.
 double rounded(const Exact::FT& x) { return CGAL::to_double(x.exact()); }
 
@@ -221,7 +223,7 @@ Ring rounded(const ExactRing& ring) {
   return out;
 }
 
-/// Returns the smallest of the outer rings that contain a hole. The hole may touch it at corners only.
+/// Returns the index of the smallest outer ring that contains a hole. The hole may touch the ring only at corners.
 std::size_t ring_around(const ExactRing& hole, const ExactRings& outer, const std::vector<Exact::FT>& areas) {
   const ExactPoint p = CGAL::midpoint(hole[0], hole[1]);
   std::optional<std::size_t> best;

@@ -20,10 +20,10 @@ struct Edge {
   friend auto operator<=>(const Edge&, const Edge&) = default;
 };
 
-/// Adds triangles on the left of an edge of the remaining area. The third corner is the visible vertex that sees the edge under the largest
-/// angle. No other visible vertex is then inside the circle through the three corners, which makes it a constrained Delaunay triangulation
-/// (Chew 1989). Angles are compared in doubles; whether the triangle is inside the remaining area and contains no vertex is decided
-/// exactly. Removed parts are bounded by edges of their own.
+/// Adds triangles on the left of an edge of the remaining area. The third corner is the visible vertex from which the edge appears under
+/// the largest angle. No other visible vertex is then inside the circle through the three corners, which makes it a constrained Delaunay
+/// triangulation (Chew 1989). Angles are compared in doubles; whether the triangle is inside the remaining area and contains no vertex is
+/// decided exactly. The edges of removed triangles bound the remaining area.
 class Cutter {
 public:
   explicit Cutter(const Polygon& polygon) {
@@ -65,7 +65,8 @@ private:
     return {std::min(a.x(), b.x()), std::max(a.x(), b.x()), std::min(a.y(), b.y()), std::max(a.y(), b.y())};
   }
 
-  /// Handles a side of the last triangle: it was an edge of the remaining area, or the remaining area is now on its other side.
+  /// Updates the boundary for a side of the last triangle: an edge of the remaining area is removed; otherwise the remaining area is now on
+  /// the other side.
   void lay(const Edge& side) {
     const Edge other_hand{side.to, side.from};
     if (front_.erase(side) == 0) front_.emplace(other_hand, extent(side));
@@ -92,7 +93,7 @@ private:
     return CGAL::orientation(points_[e.from], points_[e.to], points_[v]) == CGAL::LEFT_TURN;
   }
 
-  /// Returns the cotangent of the angle under which a vertex on the left sees the edge.
+  /// Returns the cotangent of the angle under which the edge appears from a vertex on its left.
   [[nodiscard]] double cotangent(const Edge& e, std::size_t v) const {
     const Point &a = points_[e.from], &b = points_[e.to], &c = points_[v];
     const double dot = (a.x() - c.x()) * (b.x() - c.x()) + (a.y() - c.y()) * (b.y() - c.y());
@@ -107,8 +108,7 @@ private:
     return true;
   }
 
-  /// Returns true if nothing of the boundary is between the ends of the side: no edge crosses it, no vertex is on it. The side may be an
-  /// edge itself.
+  /// Returns true if the open side meets no boundary: no edge crosses it, no vertex is on it. The side may itself be an edge.
   [[nodiscard]] bool is_free(const Edge& side) const {
     if (front_.contains(side)) return true;
     const Extent box = extent(side);
@@ -116,7 +116,7 @@ private:
     for (const auto& [edge, its_box] : front_) {
       if (box.apart(its_box)) continue;
       const bool from_is_shared = edge.from == side.from || edge.from == side.to, to_is_shared = edge.to == side.from || edge.to == side.to;
-      if (from_is_shared && to_is_shared) return false; // the same side, with the remaining area on the other side
+      if (from_is_shared && to_is_shared) return false; // an edge with the same ends: the remaining area is on the other side
       if (from_is_shared || to_is_shared) {
         if (runs_along(side, from_is_shared ? edge.from : edge.to, from_is_shared ? edge.to : edge.from)) return false;
       } else if (CGAL::do_intersect(segment, Predicates::Segment_2(points_[edge.from], points_[edge.to]))) {

@@ -11,7 +11,7 @@ namespace steplap {
 
 namespace {
 
-// Exact for polynomials of degree 19: moments of order 18 times a linear traction.
+// Nodes along an edge: exact for polynomials of degree 19, the moments of order 18 times a linear traction.
 constexpr int k_nodes = 10;
 
 /// 1/n.
@@ -34,11 +34,11 @@ constexpr auto k_root = [] {
   return b;
 }();
 
-/// Two complex numbers in one vector. The operations and their order are those of doubles, whatever registers the processor has.
+/// Two complex numbers in one vector. Operations and their order are those of scalar doubles, whatever registers the processor has.
 using Four [[gnu::vector_size(32)]] = double;
 using Two [[gnu::vector_size(16)]] = double;
 
-/// 1, κ, κ² … with first and second derivatives, four copies each; zero beyond `order`.
+/// Powers 1, κ, κ² … with first and second derivatives, four copies each; zero beyond `order`.
 template <bool WithCurvature> struct Powers {
   std::array<Four, FarField::k_order + 1> p, p1, p2;
   [[gnu::always_inline]] inline Powers(double kappa, int order) {
@@ -52,12 +52,12 @@ template <bool WithCurvature> struct Powers {
   }
 };
 
-/// g and its derivatives by κ and φ.
+/// g with first and second derivatives with respect to κ and φ.
 struct Polar {
   double g = 0, k = 0, p = 0, kk = 0, kp = 0, pp = 0;
 };
 
-/// Rows l and l + 2 of a_, with derivatives by κ.
+/// Rows l and l + 2 of a_, with derivatives with respect to κ.
 struct TwoRows {
   Four r0{}, r1{}, r2{};
 };
@@ -82,7 +82,7 @@ struct TwoTurns {
       : x{one[0], one[0], other[0], other[0]}, y{-one[1], one[1], -other[1], other[1]} {}
 };
 
-// Passed by value: data in memory would be cleared each time, which takes as long as all the sums.
+// Passed by value, because data in memory would be cleared each time, which takes as long as all the sums.
 template <bool WithCurvature> [[gnu::always_inline]] inline TwoRows turned(const TwoRows& rows, const TwoTurns& by) {
   TwoRows out{by.x * rows.r0 + by.y * __builtin_shufflevector(rows.r0, rows.r0, 1, 0, 3, 2),
               by.x * rows.r1 + by.y * __builtin_shufflevector(rows.r1, rows.r1, 1, 0, 3, 2), Four{}};
@@ -90,14 +90,14 @@ template <bool WithCurvature> [[gnu::always_inline]] inline TwoRows turned(const
   return out;
 }
 
-/// For each l: 1, l, l², l².
+/// For each l the factors 1, l, l², l².
 constexpr auto k_degrees = [] {
   std::array<std::array<double, 4>, FarField::k_order + 4> degrees{};
   for (int l = 0; l < FarField::k_order + 4; ++l) degrees[l] = {1.0, double(l), double(l * l), double(l * l)};
   return degrees;
 }();
 
-/// Sums over l of g and of the derivatives by φ, Re(−il e·r) = l Im(e·r).
+/// Sums over l of g and of its derivatives with respect to φ, Re(−il e·r) = l Im(e·r).
 template <bool WithCurvature> class PolarSums {
 public:
   /// Adds the row for l (Half = 0) or l + 2 (Half = 1).
@@ -121,7 +121,7 @@ private:
   Two value_{}, by_kappa_{}, twice_by_kappa_{}, twice_by_phi_{};
 };
 
-/// `row` is the length in a_ for each pair of rows.
+/// Returns the sums. `row`: length of each pair of rows in a_.
 template <bool WithCurvature>
 [[gnu::always_inline]] inline Polar sum_polar(const double* a, int row, double kappa, int order, double cx, double cy) {
   const Powers<WithCurvature> power(kappa, order);
@@ -149,7 +149,7 @@ template <bool WithCurvature>
 [[gnu::always_inline]] inline void add_moments(double* a, int row, const Vec2& z, double uniform, double linear) {
   constexpr int k_order = FarField::k_order, k_rows = k_order / 2 + 1;
   std::array<double, k_order + 1> weight;
-  std::array<Four, k_rows> square;    // |z|^2k for row l, one power less for l + 2, whose first entry is zero
+  std::array<Four, k_rows> square;    // |z|^2k for row l, one power lower for l + 2, whose first entry is zero
   std::array<Two, k_order + 4> power; // z^l
   for (int n = 0; n <= k_order; ++n) weight[n] = uniform * k_inverse[n + 2] + linear * k_inverse[n + 3];
   const double norm = z.squaredNorm();
@@ -164,7 +164,7 @@ template <bool WithCurvature>
   for (int l = 1; l < k_order + 4; ++l) power[l] = power[l - 1] * by_x + __builtin_shufflevector(power[l - 1], power[l - 1], 1, 0) * by_y;
   for (int first = 0; first <= k_order; first += 4)
     for (int l = first; l < first + 2 && l <= k_order; ++l, a += row) {
-      const bool has_second = l + 2 <= k_order; // otherwise the row does not exist
+      const bool has_second = l + 2 <= k_order; // false: row l + 2 does not exist
       const Two second = has_second ? power[l + 2] : Two{};
       const Four both{power[l][0], power[l][1], second[0], second[1]};
       double* at = a;
@@ -197,7 +197,8 @@ template <bool WithCurvature> Polar polar_of(const double* a, int row, double ka
 
 } // namespace
 
-// Order for which x^(n−2), the largest term of g and its derivatives, is below 2^-57, from the binary exponent of x⁴: x < 2^(-k/4).
+// Returns the order n for which x^(n−2), the largest term of g and its derivatives, is below 2^-57. The binary exponent of x⁴ bounds x: x <
+// 2^(-k/4).
 int FarField::needed_order(double x) {
   constexpr int bits = 57;
   if (x < 0x1p-57) return 3;
@@ -214,7 +215,7 @@ FarField::FarField(double radius) : radius_(radius) { a_.fill(0.0); }
 
 void FarField::add(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& shift) {
   const double at_centre = traction.at_centroid - traction.gradient.dot(shift);
-  // Moments of degree n over the triangle (centre, edge): 2·area/(n+2) ∫₀¹ along the edge.
+  // Moments of degree n over the triangle (centre, edge) are 2·area/(n+2) ∫₀¹ along the edge.
   static const EdgeRule rule;
   for (std::size_t e = 0; e < count; ++e) {
     const PatchEdge& edge = edges[e];
@@ -256,7 +257,7 @@ template <bool WithCurvature> PieceDissipation FarField::evaluate(const Vec2& v,
 
   const Polar sum = polar_of<WithCurvature>(a_.data(), 4 * k_row, kappa, order, cx, cy);
 
-  // h = s g(ωR/s, φ): derivatives along v̂ (by s), across it (by φ, divided by s), and by ω.
+  // h = s g(ωR/s, φ): derivatives along v̂ (with respect to s), across v̂ (with respect to φ, divided by s), and with respect to ω.
   PieceDissipation out;
   const double along = sum.g - kappa * sum.k;
   out.value = speed * sum.g;

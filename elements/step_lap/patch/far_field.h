@@ -20,7 +20,7 @@
 
 namespace steplap {
 
-/// Distance of the centre of rotation, in radii, below which the closed form is used.
+/// The closed form is used if the centre of rotation is within this number of radii.
 inline constexpr double k_far_ratio = 6.0;
 
 /// Dissipation of one piece for the twist (v at its centroid, ω), with derivatives.
@@ -31,15 +31,15 @@ struct PieceDissipation {
   double xw = 0, yw = 0, ww = 0;
 };
 
-/// Coefficients a_{n,l} of one piece, or of several overlapping pieces, with the radius as unit of length.
+/// Coefficients a_{n,l} of one piece, or of several overlapping pieces; lengths are in units of the radius.
 class FarField {
 public:
   static constexpr int k_order = 18;
 
-  /// Computes the coefficients; takes about 7 µs for a quadrilateral.
+  /// Computes the coefficients, which takes about 7 µs for a quadrilateral.
   FarField(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius);
 
-  /// For several pieces about a common centre: call add() for each, then finish().
+  /// Constructor for several pieces about a common centre: call add() for each piece, then finish().
   explicit FarField(double radius);
   /// Adds a piece. Edges and traction are relative to its centroid, which is at `shift` from the centre.
   void add(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& shift);

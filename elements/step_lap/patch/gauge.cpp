@@ -11,7 +11,7 @@ namespace {
 constexpr int k_max_newton = 60;
 constexpr double k_shortest_step = 1e-6;
 
-/// A point y with φ(y), its gradient h∇h − w, and its curvature ∇h∇hᵀ + h∇²h.
+/// A point y with the data of φ: its gradient h∇h − w, and its curvature ∇h∇hᵀ + h∇²h.
 struct Trial {
   Vec3 y;
   Dissipation d;
@@ -20,7 +20,7 @@ struct Trial {
   [[nodiscard]] Mat3 curvature() const { return d.gradient * d.gradient.transpose() + d.h * d.hessian; }
 };
 
-/// Scales y to the minimum of φ along its direction.
+/// Scales y to the minimum of φ along the ray through y.
 void rescale(Trial& t, const Vec3& w) {
   const double scale = w.dot(t.y) / (t.d.h * t.d.h);
   t.y *= scale;
@@ -28,7 +28,7 @@ void rescale(Trial& t, const Vec3& w) {
   t.d.hessian /= scale; // homogeneous of degree −1; the gradient is of degree 0
 }
 
-/// Starts along `warm` if it points in a suitable direction, otherwise along w, which would be exact if the set were a ball, and is exact
+/// Returns the initial point: `warm` if its direction is suitable, otherwise w, which would be exact if the set were a ball, and is exact
 /// for translation.
 Trial start(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, int& evaluations) {
   Trial t;
@@ -37,7 +37,7 @@ Trial start(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, int& eval
     t.y = warm / length;
     t.d = patch.evaluate(t.y);
     ++evaluations;
-    // Since h ≤ |y|, the maximum is at least |w| = 1. A start well below it is unsuitable.
+    // Since h ≤ |y|, the maximum is at least |w| = 1; an initial direction with a value well below is unsuitable.
     if (w.dot(t.y) > 0.7 * t.d.h) {
       rescale(t, w);
       return t;
@@ -68,7 +68,7 @@ Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, doub
   Vec3 residual = reduced(t.residual(w));
   out.converged = residual.norm() <= tolerance;
   for (int i = 0; i < k_max_newton && !out.converged; ++i) {
-    // Newton's method squares the error, so the curvature is not computed in the step that is expected to be the last.
+    // Newton's method squares the error, so the curvature is omitted in the step that is expected to be the last.
     const bool is_likely_last = residual.squaredNorm() <= tolerance;
     Mat3 curvature = t.curvature();
     if (!whole) curvature = subspace * curvature * subspace + across;
@@ -84,7 +84,7 @@ Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, doub
     t = next;
     residual = reduced(t.residual(w));
     out.converged = residual.norm() <= tolerance;
-    if (is_likely_last && !out.converged) { // more iterations follow, which need the dissipation at y
+    if (is_likely_last && !out.converged) { // not converged: further iterations need the curvature at y
       t.d = patch.evaluate(t.y);
       ++out.evaluations;
     }

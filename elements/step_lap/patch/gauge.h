@@ -13,20 +13,20 @@ namespace steplap {
 /// Solution of the problem.
 struct Gauge {
   double value = 0;           ///< max y·w/h
-  Vec3 y = Vec3::Zero();      ///< maximiser
-  Vec3 wrench = Vec3::Zero(); ///< h∇h
+  Vec3 y = Vec3::Zero();      ///< vector at which the maximum is reached
+  Vec3 wrench = Vec3::Zero(); ///< h∇h at y: the wrench with the smallest utilisation
   int evaluations = 0;
   double residual = 0; ///< |h∇h − w| on the subspace; the error of `value` is of the order of its square
   bool converged = false;
 };
 
-/// Solves the problem for |w| = 1. `warm`: initial direction, or zero; with a `subspace` (an orthogonal projector) w and `warm` must lie in
-/// it. `tolerance` applies to the projection of h∇h − w.
+/// Solves the problem for |w| = 1. `warm`: initial direction, or zero. With a `subspace` (an orthogonal projector) w and `warm` must lie in
+/// it. `tolerance`: largest length of the projection of h∇h − w.
 [[nodiscard]] Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, double tolerance,
                                const Mat3& subspace = Mat3::Identity());
 
-/// Acceptance test of a line search: sufficient decrease of a convex function, or, if rounding hides it, a sufficiently small slope without
-/// an increase beyond rounding (approximate Wolfe condition of Hager and Zhang).
+/// Acceptance test of a line search: sufficient decrease of a convex function. If rounding hides the decrease, a sufficiently small slope
+/// without an increase beyond rounding is accepted (approximate Wolfe condition of Hager and Zhang).
 [[nodiscard]] bool is_acceptable(double value0, double slope0, double value, double slope, double step);
 
 } // namespace steplap

@@ -9,15 +9,15 @@ namespace steplap {
 namespace {
 
 constexpr std::size_t k_none = CellWorkspace::k_none;
-// Largest distance, in roundings, between the ends of one side that was clipped twice. The ends differ along the cut by an amount that
-// grows as another edge crosses it at a smaller angle. This is harmless: rings remain closed and on the lines of the edges.
+// Largest distance, in rounding errors, between corresponding ends of one side that was clipped twice. The ends differ along the cut, the
+// more the smaller the angle at which another edge crosses it. This is harmless: rings remain closed and on the lines of the edges.
 constexpr double k_ends = 1e7;
 
 bool is_apart(const Box& a, const Box& b) {
   return a.high.x() < b.low.x() || b.high.x() < a.low.x() || a.high.y() < b.low.y() || b.high.y() < a.low.y();
 }
 
-/// Returns true if the whole box is outside one side of the part. Useful for long oblique parts, which have large boxes.
+/// Returns true if the whole box is outside one side of the part. This excludes long oblique parts, whose own boxes are large.
 bool has_outside(const Vec2* corners, std::size_t count, const Box& box) {
   for (std::size_t i = 0; i < count; ++i) {
     const Vec2 &from = corners[i], along = corners[i + 1 == count ? 0 : i + 1] - from;
@@ -108,7 +108,7 @@ private:
     return (w_.corners[k].at - w_.corners[l].at).lpNorm<Eigen::Infinity>() <= k_ends * rounding_;
   }
 
-  /// Searches the partner of a side. The cell with more corners searches in the one with fewer.
+  /// Searches the copy of a side in the cell across the cut. The cell with more corners searches in the one with fewer.
   void find_partner(const CellWorkspace::Cell& cell, std::size_t k) {
     const Corner& c = w_.corners[k];
     const auto beyond = static_cast<std::size_t>(c.side.beyond);
@@ -139,8 +139,8 @@ private:
     return k;
   }
 
-  /// Writes the ring that side `start` belongs to. Edges divided by cuts are joined again, but not cuts that remain: the ring may turn back
-  /// at the end of one and return along its other side.
+  /// Writes the ring to which side `start` belongs. Edges divided by cuts are joined again. Cuts that remain are kept: the ring may turn
+  /// back at the end of one and return along its other side.
   void write_ring(std::size_t start, Region& out) {
     const auto is_same = [&](std::size_t k, std::size_t l) {
       const Corner &c = w_.corners[k], &d = w_.corners[l];
@@ -158,7 +158,7 @@ private:
     else put_ring(std::move(ring), w_.cells[root(w_.cell_at[start])], out);
   }
 
-  /// Adds a ring to its polygon; the ring with the largest area is the outer one.
+  /// Adds a ring to the polygon of its component; the ring with the largest area is the outer one.
   void put_ring(Ring ring, CellWorkspace::Cell& cell, Region& out) {
     if (cell.polygon < 0) {
       cell.polygon = static_cast<int>(out.size());

@@ -15,7 +15,7 @@ namespace steplap {
 /// Scratch memory, reused by repeated calls.
 struct CellWorkspace {
   struct Cell {
-    std::size_t first = 0, count = 0; ///< range of corners
+    std::size_t first = 0, count = 0; ///< range of indices in `corners`
     std::size_t parts[2] = {0, 0};
     std::size_t root = 0; ///< representative of its connected component
     int polygon = -1;
@@ -26,17 +26,17 @@ struct CellWorkspace {
   Ring placed;            ///< corners of the second sheet's parts
   std::vector<Box> boxes; ///< bounding boxes of these parts
   std::vector<Cell> cells;
-  std::vector<std::size_t> cell_of; ///< per pair of parts; all k_none between calls
+  std::vector<std::size_t> cell_of; ///< per pair of parts: index of its cell; k_none between calls
   std::vector<Corner> corners;      ///< corners of all cells
   std::vector<std::size_t> cell_at; ///< per corner: its cell
   std::vector<std::size_t> partner; ///< per corner: the other copy of its side, or k_none
-  std::vector<char> is_written;     ///< per corner
+  std::vector<char> is_written;     ///< per corner: its side has been written
   std::vector<Polygon> polygons;    ///< unused polygons
   std::vector<Ring> rings;          ///< unused rings
 };
 
-/// Appends a ∩ b to `out`, with b's corners in w.placed: polygons with an area above `least_area`, using storage from w. Coordinates are
-/// accurate to `rounding`; narrower parts are dropped.
+/// Appends a ∩ b to `out`, as polygons with an area above `least_area`, with storage from w. w.placed: corners of b. Coordinates are
+/// accurate to `rounding`, m; narrower parts are dropped.
 void join_cells(const ConvexCut& a, const ConvexCut& b, double rounding, double least_area, CellWorkspace& w, Region& out);
 
 /// Removes the polygons from `out` and keeps their storage.

@@ -17,7 +17,7 @@ struct PatchAccess {
 
 namespace {
 
-/// Closed form about the centre of rotation c = ẑ×v/ω: h = |ω| ∬ w|r−c| dA; the friction direction is u = ±ẑ×(r−c)/|r−c|.
+/// Returns h in closed form about the centre of rotation c = ẑ×v/ω: h = |ω| ∬ w|r−c| dA; the friction direction is u = ±ẑ×(r−c)/|r−c|.
 template <bool WithCurvature>
 PieceDissipation evaluate_near(const PatchEdge* edges, const Patch::Piece& piece, const Vec2& v, double omega) {
   const Vec2 c(-v.y() / omega, v.x() / omega);
@@ -29,7 +29,7 @@ PieceDissipation evaluate_near(const PatchEdge* edges, const Patch::Piece& piece
   out.fy = sign * k.direction.x();
   out.m = sign * (k.distance + c.dot(k.direction));
   if constexpr (WithCurvature) {
-    out.xx = k.yy / size; // ẑ× maps x to y on both sides
+    out.xx = k.yy / size; // ẑ× on both sides maps yy to xx
     out.yy = k.xx / size;
     out.xy = -k.xy / size;
     const double vx = v.x() / omega, vy = v.y() / omega;
@@ -72,7 +72,7 @@ template <bool WithCurvature> void add_piece(Dissipation& out, const Patch& patc
   add_shifted<WithCurvature>(out, evaluate_piece<WithCurvature>(patch, i, v, nu[2]), arm);
 }
 
-/// Adds overlapping pieces as one, if the centre of rotation is far from all of them.
+/// Adds groups of overlapping pieces by their common expansions, if the centre of rotation is far from all of them.
 template <bool WithCurvature> void add_groups(Dissipation& out, const Patch& patch, const Vec2& point, const Vec3& nu) {
   for (const auto& group : PatchAccess::groups(patch)) {
     const Vec2 arm = group.centre - point;
@@ -109,7 +109,7 @@ struct TractionMoments {
   double polar = 0;
 };
 
-/// Sums over triangles (centroid, a, b), with ∬ λ₁ᵖλ₂^q dA = 2·area p! q!/(p+q+2)!.
+/// Returns the moments as sums over triangles (centroid, a, b), with ∬ λ₁ᵖλ₂^q dA = 2·area p! q!/(p+q+2)!.
 TractionMoments moments_of(const PatchEdge* edges, const Patch::Piece& piece) {
   TractionMoments out;
   const Vec2& g = piece.traction.gradient;
@@ -204,7 +204,8 @@ void Patch::prepare() {
 
 // Forms groups: repeatedly takes the largest piece without a group and adds the pieces within nearly the same circle.
 void Patch::group_pieces() {
-  // Relative to the largest piece: its circle should serve the others as well, and smaller pieces should not lose accuracy.
+  // Limits relative to the largest piece: its circle should contain the others with little excess, and smaller pieces should not lose
+  // accuracy.
   constexpr double k_wider = 1.05, k_smaller = 0.8;
   members_.clear();
   is_grouped_.assign(pieces_.size(), 0);

@@ -25,10 +25,10 @@ using Mat3 = Eigen::Matrix3d;
 class Patch {
 public:
   struct Piece {
-    Vec2 centroid{0, 0}; ///< in a's axes [m]
+    Vec2 centroid{0, 0}; ///< centroid in a's axes [m]
     Traction traction;
     double area = 0;
-    double radius = 0; ///< of the circle about the centroid that contains the piece [m]
+    double radius = 0; ///< radius of the circle about the centroid that contains the piece [m]
     std::size_t first_edge = 0, edges = 0;
   };
 
@@ -40,7 +40,7 @@ public:
   /// Adds a polygon with uniform traction n·μ·p [N/m²] ≥ 0. Pieces with zero area or traction are ignored. Throws std::invalid_argument for
   /// a negative or non-finite traction.
   void add(const Polygon& polygon, double traction);
-  /// The same for all polygons of a region.
+  /// Adds all polygons of a region with the same uniform traction.
   void add(const Region& region, double traction);
 
   /// Adds a polygon with linearly varying traction, integrated exactly; it must not be negative at any vertex.
@@ -55,7 +55,7 @@ public:
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
   [[nodiscard]] const PatchEdge* edges(const Piece& p) const { return edges_.data() + p.first_edge; }
 
-  [[nodiscard]] double area() const { return area_; }              ///< [m²]
+  [[nodiscard]] double area() const { return area_; }              ///< total area of the pieces [m²]
   [[nodiscard]] double force() const { return force_; }            ///< ∬ w dA [N]: capacity in translation
   [[nodiscard]] Vec2 centroid() const { return moment_ / force_; } ///< centroid of the traction [m]
   /// Returns the radius of gyration of the traction about centroid() [m].
@@ -70,7 +70,7 @@ private:
   std::vector<PatchEdge> edges_;
   void group_pieces();
 
-  /// Pieces within a circle hardly larger than that of the largest one; they have a common expansion.
+  /// Pieces within a circle hardly larger than that of the largest of them, with a common expansion.
   struct Group {
     Vec2 centre{0, 0};
     double radius = 0;
@@ -78,13 +78,13 @@ private:
     FarField far{1.0};
   };
 
-  std::vector<FarField> far_; // empty, or one per piece
-  std::vector<Group> groups_; // for prepared patches; each piece is in one group; empty if no two pieces overlap
+  std::vector<FarField> far_; // expansions of a prepared patch, one per piece; otherwise empty
+  std::vector<Group> groups_; // groups of a prepared patch; each piece is in one group; empty if no two pieces overlap
   bool are_groups_known_ = false;
   std::vector<std::size_t> members_;
   std::vector<char> is_grouped_;
   double area_ = 0, force_ = 0;
-  double polar_ = 0; // ∬ w |r − centroid()|² dA
+  double polar_ = 0; // ∬ w |r − centroid()|² dA [N m²]
   Vec2 moment_{0, 0};
 };
 
@@ -102,13 +102,13 @@ struct Dissipation {
 /// Returns h and its gradient; the Hessian is zero.
 [[nodiscard]] Dissipation evaluate_gradient(const Patch& patch, const Vec3& nu);
 
-/// The same with twist and wrench about another point [m].
+/// Returns evaluate() with twist and wrench about another point [m].
 [[nodiscard]] Dissipation evaluate_about(const Patch& patch, const Vec2& point, const Vec3& nu);
-/// evaluate_gradient() with twist and wrench about another point [m].
+/// Returns evaluate_gradient() with twist and wrench about another point [m].
 [[nodiscard]] Dissipation evaluate_gradient_about(const Patch& patch, const Vec2& point, const Vec3& nu);
 
 /// Returns ∇h of one polygon with the traction w(r) = at_centroid + gradient·(r − origin), about `point`, for a single evaluation. For a
-/// far centre of rotation nothing else is computed; for a near one `spare` is used as the patch.
+/// far centre of rotation cubature is used directly; for a near one the polygon is put into `spare`.
 [[nodiscard]] Vec3 gradient_about(const Polygon& polygon, const Traction& traction, const Vec2& origin, const Vec2& point, const Vec3& nu,
                                   Patch& spare);
 

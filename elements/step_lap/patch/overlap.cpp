@@ -17,11 +17,12 @@ namespace {
 constexpr double k_rounded_place =
     1e-16; // relative rounding error of rotated and translated coordinates, in units of the size of both sheets
 
-// Cached from the previous call, since all sheets of a joint have the same pose.
+// Returns sine and cosine of the angle, cached from the previous call, because all sheets of a joint have the same pose.
 const portable::SinCos& turn_of(double angle) {
   static thread_local double turned = 0.0;
   static thread_local portable::SinCos turn{0.0, 1.0};
-  if (std::bit_cast<std::uint64_t>(angle) != std::bit_cast<std::uint64_t>(turned)) { // also distinguishes the sign of zero
+  // Bit comparison, because it also distinguishes the sign of zero.
+  if (std::bit_cast<std::uint64_t>(angle) != std::bit_cast<std::uint64_t>(turned)) {
     turn = portable::sin_cos(angle);
     turned = angle;
   }
@@ -40,8 +41,8 @@ void place(const Ring& ring, const Pose& pose, const portable::SinCos& turn, Rin
     out[i] = {c * ring[i].x() - s * ring[i].y() + pose.x, s * ring[i].x() + c * ring[i].y() + pose.y};
 }
 
-/// Sets `out` to the part of the convex ring on the left of the line through p and q. Returns false, with `out` unchanged, if that is the
-/// whole ring.
+/// Sets `out` to the part of the convex ring on the left of the line through p and q. Returns false, with `out` unchanged, if the whole
+/// ring is on the left.
 [[gnu::always_inline]] inline bool clip(const Ring& ring, const Vec2& p, const Vec2& q, Ring& out) {
   const Vec2 along = q - p;
   if (std::all_of(ring.begin(), ring.end(), [&](const Vec2& corner) { return cross(along, corner - p) >= 0; })) return false;
@@ -66,7 +67,7 @@ void place(const Ring& ring, const Pose& pose, const portable::SinCos& turn, Rin
 }
 
 #if defined(__x86_64__)
-// The same operations compiled for AVX, whose three-operand instructions save copies.
+// The same code compiled for AVX, whose three-operand instructions save copies; results are bit-identical.
 [[gnu::target("avx")]] void clip_by_three_operands(const Ring& a, OverlapWorkspace& w) { clip_convex_as_is(a, w); }
 const bool may_clip_by_three_operands = __builtin_cpu_supports("avx") != 0;
 #endif
@@ -92,8 +93,8 @@ double depth(const RingView& a, const RingView& b) { return -std::max(widest_gap
 
 double depth(const Box& a, const Box& b) { return (a.high.cwiseMin(b.high) - a.low.cwiseMax(b.low)).minCoeff(); }
 
-/// Search for the deepest pair of convex parts. The depth of a pair is at most that of its bounding boxes, so most pairs need not be
-/// examined.
+/// Search for the deepest pair of convex parts. The depth of a pair is at most that of its bounding boxes, so most pairs are excluded
+/// without examination.
 class DeepestPair {
 public:
   DeepestPair(const Outline& a, const Outline& b, const Ring& placed, const BoxTree& parts) : a_(a), b_(b), placed_(placed), parts_(parts) {
@@ -105,13 +106,13 @@ public:
 private:
   [[nodiscard]] double bound(std::size_t p, std::size_t q) const { return steplap::depth(a_.parts.box(p), parts_.box(q)); }
 
-  /// Returns the two pairs of nodes below a pair, in the tree whose node is higher.
+  /// Returns the two pairs of nodes below a pair of nodes, in the tree whose node is higher.
   [[nodiscard]] std::array<std::array<std::size_t, 2>, 2> below(std::size_t p, std::size_t q) const {
     if (parts_.is_leaf(q) || (!a_.parts.is_leaf(p) && p <= q)) return {{{2 * p, q}, {2 * p + 1, q}}};
     return {{{p, 2 * q}, {p, 2 * q + 1}}};
   }
 
-  /// Finds a deep pair to start from, so that others can be excluded.
+  /// Finds a deep pair as first candidate, so that others can be excluded.
   void guess() {
     std::size_t p = BoxTree::k_root, q = BoxTree::k_root;
     while (!(a_.parts.is_leaf(p) && parts_.is_leaf(q))) {

@@ -11,11 +11,11 @@ namespace steplap {
 
 namespace {
 
-// Relative to the ring's extent: a vertex nearer than this to the line through its neighbours encloses no area that double precision
-// resolves (2^-52 = 2.2e-16, a few roundings).
+// Distance, relative to the ring's extent, of a vertex from the line through its neighbours below which the vertex is dropped: it encloses
+// no area that double precision resolves (2^-52 = 2.2e-16, a few rounding errors).
 constexpr double k_collinear = 1e-15;
 
-/// Twice the area and six times the first moment of a ring, about `origin`.
+/// Twice the area and six times the first moment of a ring about `origin`.
 struct RingSums {
   double area2 = 0;
   Vec2 moment6 = Vec2::Zero();
@@ -67,7 +67,7 @@ bool is_idle(const Vec2& a, const Vec2& b, const Vec2& c, double size) {
 }
 
 std::string vertex_name(const TracedRing& r, std::size_t i) {
-  std::ostringstream name; // six digits, for positions that may be micrometres
+  std::ostringstream name; // six digits, because positions may differ by micrometres
   name << "vertex " << r.from[i] << " (" << r.ring[i].x() << ", " << r.ring[i].y() << ")";
   return name.str();
 }
@@ -147,7 +147,7 @@ double area(const Region& region) {
 
 Vec2 centroid(const Polygon& polygon) {
   RingSums sums;
-  const Vec2 origin = polygon.outer.front(); // near the area, so that accuracy is not lost far from the origin
+  const Vec2 origin = polygon.outer.front(); // moments about a corner, so that no accuracy is lost far from the origin
   add_sums(sums, polygon, origin);
   return origin + sums.moment6 / (3.0 * sums.area2);
 }

@@ -46,7 +46,7 @@ public:
 [[nodiscard]] bool is_convex(const Ring& ring);
 
 /// Returns the polygon in the convention above: rings are reversed if necessary; repeated vertices, vertices collinear with their
-/// neighbours up to rounding, and zero-width spikes are removed. Throws PolygonError for what cannot be repaired unambiguously: a
+/// neighbours up to rounding, and zero-width spikes are removed. Throws PolygonError for defects that cannot be repaired unambiguously: a
 /// coordinate that is not finite, a ring without area, a ring that crosses or touches itself or another ring, a hole outside. Messages use
 /// the names `hole_names`, by default "hole 0" and so on.
 [[nodiscard]] Polygon repaired(Polygon polygon, const std::vector<std::string>& hole_names = {});

@@ -10,7 +10,7 @@ namespace steplap {
 
 namespace {
 
-// Relative to the capacity: the square of a smaller wrench underflows, so it has no direction.
+// Wrenches below this fraction of the capacity count as zero: their square underflows, so they have no direction.
 constexpr double k_nothing = 1e-150;
 
 } // namespace
@@ -30,7 +30,7 @@ RequiredPressure required_pressure(const Patch& patch, const Vec3& wrench, const
   }
   const ScaledPatch scaled(patch);
   const Vec3 all = scaled.scaled_wrench(wrench);
-  if (all.cwiseAbs().maxCoeff() < k_nothing) return out; // treated as zero: the remainder of a decaying motion
+  if (all.cwiseAbs().maxCoeff() < k_nothing) return out; // such a wrench is the remainder of a decaying motion
   const double size = all.norm();
   const Vec3 w = all / size;
 
@@ -51,7 +51,7 @@ Capacity capacity(const Patch& patch) {
   out.force = patch.force();
   out.polar = patch.force() * patch.gyration();
   // A moment is the same about every point. The gradient at the solution is in the admissible set, so 1/u has an error of the order of the
-  // squared tolerance; the factor 1 − 1e-9 covers this and all rounding, so that the result is a lower bound.
+  // squared tolerance; the factor 1 − 1e-9 covers this and all rounding, so that the couple is a lower bound.
   out.couple = (1 - 1e-9) / required_pressure(patch, {0, 0, 1}).u;
   return out;
 }

@@ -23,27 +23,27 @@ struct RequiredPressure {
   Vec3 direction = Vec3::Zero(); ///< maximiser ν, scaled to |(v at the centroid, gyration·ω)| = 1
   std::optional<Vec2> centre;    ///< centre of rotation in a's axes [m]; nothing if at infinity, or for W = 0
   int evaluations = 0;           ///< number of evaluations of h
-  double residual = 0;           ///< |h∇h/u − W| relative to |W|, in the patch's own units
+  double residual = 0;           ///< |h∇h/u − W| relative to |W|, in scaled units (ScaledPatch)
   bool converged = true;
 
   [[nodiscard]] double margin() const { return 1.0 / u; }
 };
 
 /// Returns u(W) for the wrench W = (F_x, F_y, M) about the patch's reference. `warm`, if not zero, is an initial direction (of a previous
-/// result). W = 0 gives u = 0 without direction; an empty patch and W ≠ 0 give u = ∞. It needs several evaluations, so prepare() the patch
-/// first. `tolerance` bounds |h∇h/u − W| relative to |W|; the error of u is of the order of its square.
+/// result). W = 0 gives u = 0 without direction; an empty patch and W ≠ 0 give u = ∞. Several evaluations are needed, so prepare() the
+/// patch first. `tolerance`: largest |h∇h/u − W| relative to |W|; the error of u is of the order of its square.
 [[nodiscard]] RequiredPressure required_pressure(const Patch& patch, const Vec3& wrench, const Vec3& warm = Vec3::Zero(),
                                                  double tolerance = 1e-10);
 
 /// Capacity of a patch for pure force and pure moment about its centroid, for cheap bounds of u.
 struct Capacity {
   Vec2 arm{0, 0};    ///< from the patch's reference to the centroid of its traction [m]
-  double force = 0;  ///< in pure translation, equal in all directions [N]
-  double couple = 0; ///< pure moment; rounded down [N m]
+  double force = 0;  ///< largest force in pure translation, equal in all directions [N]
+  double couple = 0; ///< largest pure moment; rounded down [N m]
   double polar = 0;  ///< force × radius of gyration: upper bound of the moment [N m]
 };
 
-/// Returns the capacity; requires the solution for one moment. To be computed once per patch.
+/// Returns the capacity, by solving the problem for one moment. To be computed once per patch.
 [[nodiscard]] Capacity capacity(const Patch& patch);
 
 /// Rigorous bounds lower ≤ u(W) ≤ upper, in a few nanoseconds. The lower one is from the ellipsoid that contains the set (h² ≤ force ·

@@ -1,13 +1,12 @@
-// A patch in its own units, for the convex problems: twists about the centroid of the traction with ω in units of 1/gyration, h and
-// wrenches in units of the force capacity. Then h(y) ≤ |y|, with equality for translation, whatever the size, position and pressure of the
-// patch.
+// A patch in scaled units, for the convex problems: twists about the centroid of the traction with ω in units of 1/gyration, h and wrenches
+// in units of the force capacity. Then h(y) ≤ |y|, with equality for translation, whatever the size, position and pressure of the patch.
 #pragma once
 
 #include "elements/step_lap/patch/limit_surface.h"
 
 namespace steplap {
 
-/// A patch with conversions of twists and wrenches between SI and scaled units. The patch must outlive it.
+/// A patch with conversions of twists and wrenches between SI and scaled units. The patch must outlive this object.
 class ScaledPatch {
 public:
   /// Precondition: the patch is not empty.

@@ -7,16 +7,16 @@ namespace steplap {
 
 namespace {
 
-// Symbolic perturbation: where edges or corners coincide, decisions are made as if the second sheet were shifted by k_push roundings in a
-// direction that edges rarely have. A distance of up to k_nought roundings counts as zero and gets the sign of the shift; a distance larger
-// than twice the shift has its own sign; in between the sign is ambiguous. The rings are thus those of a nearby pose, with the corners of
-// the true one; areas added by the shift have zero width.
+// Symbolic perturbation, in rounding errors of coordinates: where edges or corners coincide, decisions are made as if the second sheet were
+// shifted by k_push in a direction that edges rarely have. A distance of up to k_nought counts as zero and gets the sign of the shift; a
+// distance larger than twice the shift has its own sign; in between the sign is ambiguous. The rings are thus those of a nearby pose, with
+// the corners of the true one; areas added by the shift have zero width.
 constexpr double k_nought = 1, k_push = 100, k_margin = 2 * k_push;
 constexpr double k_least_push = 0.1; // smallest component of the shift across an edge, relative to the shift
-constexpr double k_film = 4;         // in roundings: narrower parts are caused by the shift
-constexpr double k_blur = 10;        // uncertainty of the position of a crossing, in roundings
+constexpr double k_film = 4;         // width in rounding errors below which a part is caused by the shift
+constexpr double k_blur = 10;        // uncertainty of the position of a crossing, in rounding errors
 const Vec2 k_push_directions[] = {{0.540302305868140, 0.841470984807897},
-                                  {-0.588501117255346, 0.808496403819590}}; // unit vectors at 1 and 2.2 rad
+                                  {-0.588501117255346, 0.808496403819590}}; // directions of the shift: unit vectors at 1 and 2.2 rad
 
 using Crossing = TraceWorkspace::Crossing;
 using Order = TraceWorkspace::Order;
@@ -39,7 +39,8 @@ public:
     for (const std::size_t sheet : {0u, 1u})
       for (const Boundary::Span& ring : sheets_[sheet].boundary->rings)
         if (!is_crossed(sheet, ring)) add_whole(sheet, ring, least_area, out);
-    if (is_pushed_ && out.size() > 1 && !w_.holes.empty()) return false; // a hole may touch several outer rings
+    // With the shift a hole may touch several outer rings, so its ring is ambiguous.
+    if (is_pushed_ && out.size() > 1 && !w_.holes.empty()) return false;
     while (!w_.holes.empty()) {
       Polygon* around = polygon_around(w_.holes.back().front(), out);
       if (!around) return false;
@@ -138,7 +139,7 @@ private:
     order.place.resize(w_.crossings.size());
     for (const Crossing& c : w_.crossings) ++order.start[c.edge[sheet] + 1];
     for (std::size_t i = 1; i < order.start.size(); ++i) order.start[i] += order.start[i - 1];
-    // each start advances to the end of its range while the crossings are stored, and is then moved back
+    // Each start advances to the end of its range while crossings are stored, and is then reset.
     for (std::size_t c = 0; c < w_.crossings.size(); ++c) order.crossings[order.start[w_.crossings[c].edge[sheet]]++] = c;
     for (std::size_t i = order.start.size() - 1; i > 0; --i) order.start[i] = order.start[i - 1];
     order.start[0] = 0;
@@ -163,8 +164,8 @@ private:
 
   // --- rings ---------------------------------------------------------------------------------------------
 
-  /// Follows the first boundary from where it enters to where it leaves the other sheet, then the second boundary, and so on. Returns false
-  /// if entries and exits do not alternate.
+  /// Writes the ring through crossing `start`: follows the first boundary from where it enters the other sheet to where it leaves it, then
+  /// the second boundary, and so on. Returns false if entries and exits do not alternate.
   bool trace_from(std::size_t start, double least_area, Region& out) {
     Ring ring = spare_ring();
     std::size_t c = start, sheet = 0;
@@ -181,7 +182,7 @@ private:
     return is_sound;
   }
 
-  /// Adds the corners along the sheet's boundary up to the next crossing.
+  /// Adds the corners along the sheet's boundary from a crossing up to the next one. Returns the next crossing.
   std::size_t walk(std::size_t sheet, std::size_t from, Ring& ring) const {
     const Order& order = w_.orders[sheet];
     std::size_t edge = w_.crossings[from].edge[sheet], place = order.place[from] + 1;
@@ -198,8 +199,8 @@ private:
     return start[ring.first] != start[ring.first + ring.count];
   }
 
-  /// Adds a ring without crossings if it is inside the other sheet. It is then completely inside or outside, and farther from the other
-  /// boundary than the margin.
+  /// Adds a ring without crossings if it is inside the other sheet. Such a ring is completely inside or outside, and farther from the other
+  /// boundary than the margin, so one corner decides.
   void add_whole(std::size_t sheet, const Boundary::Span& span, double least_area, Region& out) {
     const Vec2 p = corner(sheet, span.first) + (sheet == 1 ? push_ : -push_);
     if (crossings_to_the_right(1 - sheet, BoxTree::k_root, p) % 2 == 0) return;
@@ -235,7 +236,7 @@ private:
     }
   }
 
-  /// Returns true for an area that exists only because of the shift.
+  /// Returns true if the ring encloses an area only because of the shift.
   [[nodiscard]] bool is_film(const Ring& ring, double area) const {
     if (!is_pushed_) return false;
     double length = 0;
@@ -243,7 +244,7 @@ private:
     return std::abs(area) <= k_film * rounding_ * length;
   }
 
-  /// Returns the smallest of several outer rings around the point (an island in a hole).
+  /// Returns the smallest outer ring around the point (of several, if an island lies in a hole).
   static Polygon* polygon_around(const Vec2& p, Region& out) {
     if (out.size() == 1) return &out.front();
     Polygon* found = nullptr;

@@ -1,8 +1,8 @@
 // Overlap of two sheets traced along their boundaries, changing from one to the other at each crossing (Weiler and Atherton, 1977).
 //
-// Crossings are found by trees of boxes over the edges, at a cost proportional to edges plus crossings. Which side of a line a corner is
-// on, and in which order an edge is crossed, must be clear by many times the rounding error. If corners and edges coincide up to rounding,
-// a slightly perturbed pose decides (see the .cpp). If something is neither clear nor coincident, the overlap is not traced, and the robust
+// Crossings are found by trees of boxes over the edges, at a cost proportional to edges plus crossings. The side of a line on which a
+// corner lies, and the order of crossings along an edge, must be certain by many times the rounding error. If corners and edges coincide up
+// to rounding, a slightly perturbed pose decides (see the .cpp). In all other uncertain cases the overlap is not traced, and the robust
 // method of convex cells is used (joined_cells.h).
 #pragma once
 
@@ -21,18 +21,18 @@ struct TraceWorkspace {
     Vec2 at{0, 0};
     bool first_enters = false; ///< the first boundary enters the second sheet there; the second boundary leaves the first
   };
-  /// Crossings of one sheet in the order along its boundary.
+  /// Crossings of one sheet, sorted along its boundary.
   struct Order {
-    std::vector<std::size_t> start;     ///< per edge: index of its first one in `crossings`; one more at the end
-    std::vector<std::size_t> crossings; ///< sorted
-    std::vector<std::size_t> place;     ///< per crossing: index in `crossings`
+    std::vector<std::size_t> start;     ///< per edge: index in `crossings` of its first crossing; one more entry at the end
+    std::vector<std::size_t> crossings; ///< indices of the crossings, sorted
+    std::vector<std::size_t> place;     ///< per crossing: its position in the sorted list
   };
 
   Ring placed;  ///< corners of the second sheet's boundary
   BoxTree tree; ///< tree over its edges
   std::vector<Crossing> crossings;
   Order orders[2];
-  std::vector<char> is_done; ///< per crossing
+  std::vector<char> is_done; ///< per crossing: it has been used
   std::vector<Ring> holes;
 };
 
@@ -44,7 +44,7 @@ struct BoundaryView {
 };
 
 /// Writes a ∩ b to `out`, which must be empty, as join_cells() does, with storage from `spare`. Returns false, with `out` unchanged, if a
-/// decision is ambiguous. Coordinates are accurate to `rounding`.
+/// decision is ambiguous. Coordinates are accurate to `rounding`, m.
 [[nodiscard]] bool trace_overlap(const BoundaryView& a, const BoundaryView& b, double rounding, double least_area, TraceWorkspace& w,
                                  CellWorkspace& spare, Region& out);
 
