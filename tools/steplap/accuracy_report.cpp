@@ -67,10 +67,10 @@ void print_answer(std::ostream& out, const AccuracyStudy& study, const std::vect
   }
 }
 
-constexpr std::size_t k_most_rows = 12; // on the screen
+constexpr std::size_t k_most_rows = 12; // largest number of rows printed on the screen
 
-// Returns the entries for the screen, in the order of the study. Those that nothing beats in both time and error come first, then the
-// cheapest of the others.
+// Returns the entries for the screen, in the order of the study. Pareto-optimal entries (no other is both faster and more accurate) are
+// chosen first, then the cheapest of the others.
 std::vector<const AccuracyEntry*> entries_to_show(const AccuracyStudy& study, bool are_all) {
   std::vector<const AccuracyEntry*> entries;
   for (const AccuracyEntry& e : study.entries)
@@ -80,7 +80,7 @@ std::vector<const AccuracyEntry*> entries_to_show(const AccuracyStudy& study, bo
     return a->is_pareto != b->is_pareto ? a->is_pareto : a->cpu_seconds < b->cpu_seconds;
   });
   entries.resize(k_most_rows);
-  std::sort(entries.begin(), entries.end()); // they are elements of one vector
+  std::sort(entries.begin(), entries.end()); // restores the order of the study: the pointers refer to one vector
   return entries;
 }
 
@@ -91,8 +91,8 @@ constexpr const char* k_colours[] = {"#1b6ca8", "#c8553d", "#3a7d44", "#7b4fa3",
 
 // A logarithmic axis over whole decades.
 struct Axis {
-  double low = INFINITY, high = -INFINITY; ///< decades
-  double from = 0.0, to = 1.0;             ///< position on the page
+  double low = INFINITY, high = -INFINITY; ///< smallest and largest decade, log10 of the value
+  double from = 0.0, to = 1.0;             ///< positions of both ends on the page
   void take(double value) {
     if (!(value > 0.0)) return;
     low = std::min(low, std::floor(portable::log10(value)));
@@ -186,7 +186,7 @@ std::vector<std::string> integrators_of(const std::vector<Drawn>& points) {
 
 namespace {
 
-// Results depend on the computer, because a budget permits more settings on a fast one.
+// Prints the computing time allowed for the study and the settings that were not tried because of it. A fast computer tries more of them.
 void print_budget(std::ostream& out, const AccuracyStudy& study) {
   std::string left_out;
   for (const AccuracyEntry& e : study.entries)

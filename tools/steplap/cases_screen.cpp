@@ -15,8 +15,8 @@ namespace {
 
 using Align = TextTable::Align;
 
-constexpr std::size_t k_columns = 80, k_name = 25, k_quantity = 12; // characters
-constexpr std::size_t k_cases_in_row = 6;                           // of the matrix; more cases are printed in further tables
+constexpr std::size_t k_columns = 80, k_name = 25, k_quantity = 12; // widths of screen, names and quantities, in characters
+constexpr std::size_t k_cases_in_row = 6;                           // columns of the matrix; more cases are printed in further tables
 
 std::string name_text(const std::string& name) { return cut(shown(name), k_name); }
 

@@ -92,7 +92,7 @@ ExitCode report_exception(Console& console) {
   } catch (const FileError& error) {
     log_error(error.what());
     return ExitCode::usage;
-  } catch (const std::filesystem::filesystem_error& error) { // the working folder or that for temporary files is gone
+  } catch (const std::filesystem::filesystem_error& error) { // for example: the current folder no longer exists
     log_error("cannot use '" + error.path1().string() + "': " + error.code().message());
     return ExitCode::usage;
   } catch (const ModelError& error) {

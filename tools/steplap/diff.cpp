@@ -27,7 +27,7 @@ struct DiffOptions {
   bool is_sameness_required = false;
 };
 
-constexpr std::size_t k_longest = 40; // characters of a value that is not a number
+constexpr std::size_t k_longest = 40; // longest text shown for a value that is not a number, in characters
 
 std::string shortened(const std::string& text) {
   std::size_t length = 0, end = 0;

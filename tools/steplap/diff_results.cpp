@@ -20,10 +20,9 @@ using Align = TextTable::Align;
 using Json = OrderedJson;
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_same_value = 1e-9;   // of the larger value; used if there are no error estimates, because runs with other steps agree to
-                                        // this accuracy
-constexpr std::size_t k_most_rows = 20; // of events, and of extremes, on the screen
-constexpr double k_least_share = 0.005; // smaller changes of a share round to 0 % of the limit
+constexpr double k_same_value = 1e-9;   // relative difference of equal values without error estimates, from runs with different steps
+constexpr std::size_t k_most_rows = 20; // of the tables of events and of extremes
+constexpr double k_least_share = 0.005; // changes of a utilisation below 0.5 % of the limit are shown as 0 % and therefore omitted
 
 double number_in(const Json& json, const char* key) {
   const auto found = json.find(key);
@@ -59,7 +58,7 @@ bool differ(const Measured& a, const Measured& b) {
 
 // Returns both values with few digits and one prefix, or with all digits if few do not distinguish them.
 std::pair<Cell, Cell> cells_of(const Measured& a, const Measured& b, const std::string& unit) {
-  const double column = std::fmax(std::abs(a.value), std::abs(b.value)); // the finite one if the other is NaN
+  const double column = std::fmax(std::abs(a.value), std::abs(b.value)); // fmax ignores NaN and returns the other value
   const auto few = [&](const Measured& m) { return shown_quantity(m.value, unit, {.error = m.error, .limit = {}, .column = column}); };
   const bool is_told_apart = few(a) != few(b);
   const auto cell = [&](const Measured& m) {
@@ -68,7 +67,7 @@ std::pair<Cell, Cell> cells_of(const Measured& a, const Measured& b, const std::
   return {cell(a), cell(b)};
 }
 
-// Returns an empty cell if the value before was zero within its error.
+// Returns the relative change from a to b. The cell is empty if a is zero within its error, or if one of them is NaN.
 Cell change_of(const Measured& a, const Measured& b) {
   if (std::isnan(a.value) || std::isnan(b.value) || std::abs(a.value) <= std::max(k_same_value * std::abs(b.value), a.error.value_or(0.0)))
     return "";
@@ -124,7 +123,7 @@ std::size_t print_criteria(std::ostream& out, const Json& a, const Json& b) {
   return table.rows().size() - 1;
 }
 
-// Prints how much of its limit each element uses, those first that come nearest to it in either run.
+// Prints the utilisation of each element's limit in both runs, in descending order of the larger one. Returns the number of changes.
 std::size_t print_shares(std::ostream& out, const Json& a, const Json& b) {
   struct Row {
     double worst;

@@ -61,7 +61,7 @@ bool open_browser(const std::string& address) {
   close(ends[1]);
   if (child > 0) waitpid(child, nullptr, 0);
   char failed = 0;
-  const bool is_open = child > 0 && read(ends[0], &failed, 1) == 0; // closed when the browser program has started
+  const bool is_open = child > 0 && read(ends[0], &failed, 1) == 0; // the pipe closes without data when the browser has been started
   close(ends[0]);
   return is_open;
 }

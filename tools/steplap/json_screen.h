@@ -16,7 +16,7 @@
 
 namespace steplap {
 
-/// Output stream for a command.
+/// Output stream that collects a command's lines and tables and returns them as one JSON document.
 class JsonScreen : public std::ostringstream, public TableSink {
 public:
   void begin(const About& about) override;

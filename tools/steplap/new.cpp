@@ -21,7 +21,7 @@ struct NewOptions {
   std::string kind;
   std::optional<std::string> output;
   bool is_overwriting = false;
-  std::map<std::string, std::optional<std::string>> values; ///< by option
+  std::map<std::string, std::optional<std::string>> values; ///< values given by the user, by option name
 };
 
 // Returns the text between the next pair of quotes from `at`, and moves `at` behind them.
@@ -61,7 +61,7 @@ const ModelTemplate& template_called(const std::string& kind) {
   throw UsageError("there is no kind '" + kind + "' to start from" + did_you_mean(kind, names) + "; there are " + list);
 }
 
-// Returns the text with the given values in place of those of the template; with `only`, those of this option.
+// Returns the template with the values given by the user. If `only` names an option, the other parameters keep the template's values.
 std::string filled(const ModelTemplate& one, const NewOptions& options, const std::string& only = "") {
   std::string text(one.text);
   std::vector<TemplateParameter> parameters = one.parameters();
@@ -98,7 +98,7 @@ ExitCode write_model(const NewOptions& options, Console& console) {
   const ModelTemplate& one = template_called(options.kind);
   refuse_wrong_values(one, options);
   const std::string text = filled(one, options);
-  // Values that are valid individually may be invalid together; this is reported now, not when the file is used.
+  // Values that are valid individually may be incompatible. Reading the new model now reports this before the file is written.
   const auto loaded = load_given(parse_given_model(text, one.name + ".toml", program_catalogue()), one.name);
   for (const Finding& finding : findings_of(*loaded))
     if (finding.level == FindingLevel::warning) log_warning(finding.text);

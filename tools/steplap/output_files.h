@@ -9,7 +9,7 @@ namespace steplap {
 
 /// An option that names an output file, with its value.
 struct OutputFile {
-  const char* option; ///< option for messages, "-o"
+  const char* option; ///< name of the option for error messages, "-o"
   std::optional<std::string> path;
 };
 

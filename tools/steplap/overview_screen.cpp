@@ -14,11 +14,13 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_columns = 100, k_all_columns = 1000;                    // the second with all digits
-constexpr std::size_t k_all_lines = 100;                                        // for texts that are never cut
-constexpr std::size_t k_story_lines = 10, k_most_bars = 5, k_most_warnings = 3; // chosen so that the screen has at most 30 lines
-constexpr double k_least_share = 0.005;                                         // smaller utilisations round to 0 % and are omitted
-constexpr int k_bar = 20;                                                       // characters
+// line widths, in characters; the second if all digits are shown
+constexpr std::size_t k_columns = 100, k_all_columns = 1000;
+constexpr std::size_t k_all_lines = 100;                                        // number of lines for texts that must not be shortened
+constexpr std::size_t k_story_lines = 10, k_most_bars = 5, k_most_warnings = 3; // limits that keep the screen within 30 lines
+// smaller utilisations are shown as 0 % and therefore omitted
+constexpr double k_least_share = 0.005;
+constexpr int k_bar = 20;                                                       // length of a full bar, in characters
 
 std::string coloured(const std::string& text, const char* colour, bool is_coloured) {
   return is_coloured ? std::string("\x1b[") + colour + "m" + text + "\x1b[0m" : text;
@@ -107,7 +109,7 @@ void print_notes(std::ostream& out, const OrderedJson& findings) {
     if (f.at("code") == "friction_by_source") out << wrapped("Note: " + finding_text(f), k_columns, 6, 3) << "\n";
 }
 
-// Returns the text for a level of trust. It refers to numerical errors only, not to effects that the model leaves out.
+// Returns a text for the level of numerical accuracy. It says nothing about effects that the model omits.
 std::string words_of_level(const std::string& level) {
   return level == "good" ? "small" : level == "limited" ? "not known to be small" : "not known";
 }

@@ -27,7 +27,7 @@ struct PlotOptions {
   bool is_beside = false, is_overwriting = false;
 };
 
-// Contents of a figure, before the runs are known.
+// Figure as requested on the command line, before the runs have been read.
 struct FigureRequest {
   std::string title;
   std::vector<std::string> channels, bounds;

@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using Align = TextTable::Align;
 
-constexpr std::size_t k_shown_events = 12; // the screen has thirty lines
+constexpr std::size_t k_shown_events = 12; // keeps the output within thirty lines
 constexpr OptionWords<DriftCorrection, 2> k_drifts{{{"none", DriftCorrection::none}, {"line", DriftCorrection::line}}};
 
 struct RecordOptions : ReadingOptions {
@@ -99,7 +99,7 @@ private:
   SignalSink* b_;
 };
 
-// Subtracts gravity from an axis of the record, which is known only after the columns have been read.
+// Subtracts gravity from the axis given by the user. The axes of a record are known only after its columns have been read.
 class GravityFirst : public SampleSink {
 public:
   GravityFirst(Conditioning conditioning, std::optional<std::string> gravity, const RecordOptions& options, SignalSink& sink)
@@ -149,7 +149,7 @@ void print_events(std::ostream& out, const RecordResult& result) {
   std::vector<const ShockEvent*> order;
   for (const EventResult& found : result.events) order.push_back(&found.event);
   const auto size = [](const ShockEvent* e) { return std::abs(e->axes[e->worst].peak); };
-  if (order.size() > k_shown_events) { // the largest, in order of time
+  if (order.size() > k_shown_events) { // shows the largest events in order of time
     std::partial_sort(order.begin(), order.begin() + k_shown_events, order.end(),
                       [&](const auto* a, const auto* b) { return size(a) > size(b); });
     order.resize(k_shown_events);
@@ -211,7 +211,7 @@ void print_result(std::ostream& out, const RecordResult& result, const std::opti
   else print_events(out, result);
 }
 
-// A sink that ignores the signal; only the Conditioner before it matters.
+// Ignores the signal. Used where only the results of the preceding Conditioner are needed.
 class DiscardingSink : public SignalSink {
 public:
   void begin(const RecordLayout&, double) override {}
@@ -231,7 +231,7 @@ std::vector<std::array<double, 3>> means_of(const std::string& file, const Recor
   return first.conditioner().segment_means();
 }
 
-// Returns an error if the reading at rest is a large fraction of the threshold, because events would then report gravity, not shocks.
+// Returns an error if the mean reading at rest exceeds half the threshold on any axis: gravity would then trigger the event search.
 std::optional<std::string> events_hang_on_gravity(const RecordOptions& options, const RecordResult& result) {
   constexpr double k_felt = 0.5;
   if (options.gravity || options.quiet || result.recording.layout.is_peaks) return {};
@@ -372,8 +372,7 @@ ExitCode record(const RecordOptions& options, Console& console) {
     process(options.files[i], options, outputs, console);
   }
   for (const auto& folder : folders)
-    commit(*folder, is_silent, console); // after all files have been read, so that none can be rejected
-                                         // any more
+    commit(*folder, is_silent, console); // only if every file has been read without error
   return ExitCode::done;
 }
 

@@ -1,4 +1,4 @@
-// Exit code of runs of which "hold" is required.
+// Exit code of `--require-hold`, which demands the verdict "hold" of all runs.
 #pragma once
 
 #include "mbd/trust/judgement.h"

@@ -32,7 +32,7 @@ constexpr std::size_t k_most_events_shown = 30;
 
 std::string text_at(const Json& json, const char* key) { return json.at(key).get<std::string>(); }
 
-// Returns NaN for null, unless "…_is" denotes an infinity.
+// Returns a number of the summary. JSON has no infinity: ±∞ is stored as null with a second entry KEY_is. Other nulls are NaN.
 double number_at(const Json& json, const std::string& key) {
   if (const Json& value = json.at(key); value.is_number()) return value.get<double>();
   const auto which = json.find(key + "_is");
@@ -73,7 +73,7 @@ struct ShownRange {
   [[nodiscard]] const ShownExtreme& largest() const { return std::abs(low.value) > std::abs(high.value) ? low : high; }
 };
 
-// A run with lookup tables.
+// A run with its extremes, indexed by channel name.
 struct TabledRun {
   explicit TabledRun(const ShownRun& shown) : run(shown), summary(shown.summary), name(text_at(summary.at("model"), "name")) {
     for (const auto& [channel, entry] : summary.at("extremes").items()) {
@@ -95,14 +95,14 @@ struct TabledRun {
   std::unordered_map<std::string, std::size_t> places;
 };
 
-// Formats "0.6", "12".
+// Formats a value with one digit below 10, otherwise as an integer: "0.6", "12".
 std::string rough_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, value < 10.0 ? "%.1g" : "%.0f", value);
   return text;
 }
 
-// Describes results omitted because of their cost, with the option that requests them.
+// Returns the reason why errors were not estimated. If the cost was too high, it names the option that requests them.
 std::string why_not_estimated(const TabledRun& run) {
   return text_at(run.summary, "error_not_estimated") + (run.summary.at("error_estimate") == "too dear" ? " (--estimate-error)" : "");
 }
@@ -142,7 +142,7 @@ void print_events(std::ostream& out, const std::vector<ResultEvent>& events) {
   if (shown > k_most_events_shown) out << "  … and " << shown - k_most_events_shown << " more: see events.csv\n";
 }
 
-// Returns the channels shown: reactions that are not always zero.
+// Returns true for reactions that are not zero during the whole run.
 bool is_shown(const ShownRange& range) {
   return is_reaction(range.name, range.unit) && !std::isnan(range.low.value) && range.largest().value != 0.0;
 }
@@ -160,7 +160,7 @@ std::string extreme_time_text(double t, std::optional<double> error) {
 
 std::string time_of_text(const ShownExtreme& extreme) { return extreme_time_text(extreme.t.value_or(0.0), extreme.t_error); }
 
-// Omits digits of the margin of a joint whose load is only rounding.
+// Formats a joint's margin. It is shown as "> 1e9" if the joint carries only rounding errors.
 std::string small_margin_text(double margin, std::optional<double> error) {
   constexpr double k_unloaded = 1e9; // above it only the magnitude of a margin is tracked (mbd/simulation/extremes.cpp)
   if (!std::isfinite(margin)) return "–";
@@ -218,7 +218,7 @@ void print_slides(std::ostream& out, const TabledRun& run) {
   if (!table.is_empty()) out << "\nLargest slides\n" << table;
 }
 
-// Prints the largest line load on sheet edges in contact, and the elements that carry load in parallel with a joint.
+// Prints the largest line load on the joint's sheet edges, N/m, and the elements that carry load in parallel with the joint.
 void print_beside(std::ostream& out, const std::string& joint, const Json& a) {
   if (const auto load = optional_at(a, "largest_edge_load"); load && *load > 0.0) {
     out << "  " << joint << ": sheet edges carried up to " << measured_text(*load, error_at(a, "error_largest_edge_load"), "N/m");

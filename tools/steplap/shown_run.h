@@ -13,10 +13,10 @@
 
 namespace steplap {
 
-/// Data that differ between repetitions of a run and are therefore in no file.
+/// Cost of a run: data that differ between repetitions and are therefore not stored in files.
 struct RunCost {
   double cpu_seconds = 0.0;
-  std::optional<double> cost_of_estimate; ///< s, if errors were not estimated because of this cost
+  std::optional<double> cost_of_estimate; ///< predicted time of an error estimate that was omitted because of it, s
   std::size_t rows = 0, channels = 0;     ///< of the written trajectory
 };
 
