@@ -12,12 +12,12 @@
 
 namespace steplap::study {
 
-/// End of a search.
+/// Result of a search.
 struct SearchEnd {
   std::vector<double> u;        ///< last point
   std::vector<double> gradient; ///< gradient at u
   double g = 0.0;               ///< value at u
-  bool is_known = false;        ///< true if the search was approaching a known point
+  bool is_known = false;        ///< true if the search ended because it approached a known design point
   bool is_bad = false;          ///< true if a run without a result ended the search
   std::string trouble;          ///< reason if it did not converge; "" otherwise
 };

@@ -15,8 +15,8 @@ struct Finding {
   std::string quantity; ///< "probability", "beta", "first order", ...
   double value = std::numeric_limits<double>::quiet_NaN();
   double low = std::numeric_limits<double>::quiet_NaN(), high = std::numeric_limits<double>::quiet_NaN();
-  long samples = 0;     ///< number of samples used
-  std::string status{}; ///< "" if valid; otherwise a remark on its reliability
+  long samples = 0;     ///< number of samples from which it was computed
+  std::string status{}; ///< "" if valid; otherwise the reason why it is not reliable
 };
 
 /// Reliability of an answer.

@@ -30,14 +30,14 @@ public:
   void values_at(const double* u, double* values) const;
   /// Returns the p-quantile of a random variable, given by its position in random().
   [[nodiscard]] double quantile(std::size_t place, double p) const;
-  /// First-order changes of a reliability index β with the distribution of one random variable.
+  /// Derivatives of a reliability index β with respect to the distribution of one random variable, at fixed limit state.
   struct IndexSlope {
-    double by_mean = 0.0;      ///< per unit by which the distribution is moved
-    double by_deviation = 0.0; ///< per unit of standard deviation by which it is stretched about its mean
+    double by_mean = 0.0;      ///< per unit shift of the distribution, in 1/unit of the variable
+    double by_deviation = 0.0; ///< per unit increase in the standard deviation, by stretching about the mean
   };
-  /// Returns these for each random variable, at a design point `u` with index `beta`, not zero (M. Hohenbichler, R. Rackwitz, Sensitivity and
-  /// importance measures in structural reliability, Civil Engineering Systems 3, 1986). For a normal variable the distribution keeps its
-  /// kind; of any other, moved and stretched values are those of the same shape.
+  /// Returns one entry per random variable, at a design point `u` with index `beta` ≠ 0 (M. Hohenbichler, R. Rackwitz, Sensitivity and
+  /// importance measures in structural reliability, Civil Engineering Systems 3, 1986). Shifting and stretching preserve the shape of the
+  /// distribution; a normal distribution stays normal.
   [[nodiscard]] std::vector<IndexSlope> index_slopes(const std::vector<double>& u, double beta) const;
   /// Returns the mean and the standard deviation of a random variable, given by its position in random().
   [[nodiscard]] double mean(std::size_t place) const;

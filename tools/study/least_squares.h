@@ -1,8 +1,8 @@
-// Least squares for residuals that cost a simulation each: Levenberg-Marquardt method with difference quotients.
+// Nonlinear least squares for residuals that each require a simulation: Levenberg-Marquardt method with difference quotients.
 //
-// Parameters are scaled to 0 … 1 by their ranges, which are bounds. The difference step is chosen from the error ε of the runs: h = ∛ε of
-// the parameter's size, where the truncation error h² equals the error ε/h due to the runs. The difference of Jacobians with steps h and 2h
-// estimates the error of the derivatives. Independent evaluations are requested in one batch.
+// Parameters are scaled to 0 … 1 by their ranges, which are bounds. The difference step h, relative to the parameter's size, is ∛ε, where ε
+// is the relative error of the runs: the truncation error h² then equals the error ε/h due to the runs. The error of the derivatives is
+// estimated from Jacobians with steps h and 2h. Independent evaluations are requested in one batch.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ using ResidualBatch = std::function<std::vector<Eigen::VectorXd>(const std::vect
 struct LeastSquaresProblem {
   ResidualBatch residuals;
   Eigen::VectorXd step; ///< difference step, as a fraction of the ranges
-  double floor = 0.0;   ///< sum of squares due to the error of the runs alone
+  double floor = 0.0;   ///< sum of squares caused by the numerical error of the runs
   long iterations = 100;
 };
 

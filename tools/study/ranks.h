@@ -1,7 +1,4 @@
-// MPI processes of one study: rank 0 requests, stores and evaluates; the others run samples for it.
-//
-// A single process does not use MPI. Programs with several processes initialise MPI (tools/study/program/mpi_session.h) and use of_world();
-// a library never does.
+// MPI processes of one study. Rank 0 selects and stores the samples; all ranks run them.
 #pragma once
 
 #include <cstddef>

@@ -25,8 +25,8 @@ struct FindingView {
 /// Determines the presentation of a finding from its quantity.
 [[nodiscard]] FindingView view_of(const Finding& finding, const std::vector<ReportColumn>& columns);
 
-/// Formats an estimate: "1.83e-4" for 1.8273e-4 with interval 1.5e-4 to 2.2e-4. Two digits of the interval's width are shown; the first of
-/// them is significant. Without an interval `digits` are shown.
+/// Formats an estimate so that the last digit is the second digit of the interval's width: "1.83e-4" for 1.8273e-4 with interval 1.5e-4 to
+/// 2.2e-4. Without an interval, `digits` significant digits are shown.
 [[nodiscard]] std::string estimate_text(double value, double low, double high, int digits);
 
 } // namespace steplap::study

@@ -17,8 +17,8 @@ struct SensitivitySettings : KindSettings {
 
 [[nodiscard]] StudyKind sensitivity_kind();
 
-/// Returns the relative error of a run's results: its tolerance for adaptive methods. For constant steps it is the accuracy of event
-/// location, because the step errors themselves vary smoothly with the variables.
+/// Returns the relative error of a run's results: the tolerance of adaptive methods. With constant steps it is the accuracy of event
+/// location, because step errors vary smoothly with the variables and cancel in differences.
 [[nodiscard]] double run_error_of(const LoadedStudy& loaded);
 
 } // namespace steplap::study

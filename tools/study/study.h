@@ -25,12 +25,12 @@ struct Variable {
   std::vector<double> range; ///< [low, high]
   std::string distribution;
   std::optional<double> mean, standard_deviation, cov;
-  std::optional<double> low, high, mode; ///< parameters of a uniform, triangular or beta distribution
+  std::optional<double> low, high, mode; ///< bounds and mode of a uniform, triangular or beta distribution
   std::optional<double> shape, shape2, scale, location;
-  std::optional<double> lower, upper; ///< truncation of the distribution
-  std::string measured, column;       ///< CSV file to which the distribution is fitted
+  std::optional<double> lower, upper; ///< bounds at which the distribution is truncated
+  std::string measured, column;       ///< CSV file and column of measured values to which the distribution is fitted
   std::optional<double> value;        ///< point around which local studies are made; the model's value if not given
-  std::string unit;                   ///< unit of the values at the paths; otherwise as in the file
+  std::string unit;                   ///< unit of the numbers given; "": the unit of the model's field
   Location where;
 
   [[nodiscard]] bool has_distribution() const { return !distribution.empty(); }
@@ -44,7 +44,7 @@ struct Correlation {
   Location where;
 };
 
-/// Quantity that a response takes from a run.
+/// How a response is computed from a run.
 enum class Measure : std::uint8_t {
   expression,        ///< none: computed from variables and other responses
   highest,           ///< largest value of the channels
@@ -64,9 +64,9 @@ enum class Measure : std::uint8_t {
 [[nodiscard]] constexpr bool is_extreme(Measure m) {
   return m == Measure::highest || m == Measure::lowest || m == Measure::largest_magnitude;
 }
-/// Returns true if it needs the judgement of the run.
+/// Returns true if the response needs the verdict or the limits of the run.
 [[nodiscard]] constexpr bool is_judged(Measure m) { return m == Measure::verdict || m == Measure::reserve; }
-/// Returns true if it needs the samples that a run writes.
+/// Returns true if the response needs the output samples of the run.
 [[nodiscard]] constexpr bool needs_samples(Measure m) { return m == Measure::mean || m == Measure::path; }
 
 /// [[response]]: a number computed for each run.
@@ -108,27 +108,26 @@ struct LimitState {
   bool is_border = false; ///< true if a study kind searches its zeros, which are no failures
 };
 
-/// [[evidence]]: loads of the past that the system has held, or not. Variables that are neither drawn anew nor set had the values in them
-/// that they still have.
+/// [[evidence]]: past loads in which the system held, or failed. Variables not listed in `anew` or `settings` had the same values as now.
 struct Evidence {
   bool is_held = true;
-  long times = 1;                             ///< number of such loads
-  std::vector<std::string> anew;              ///< variables with independent values in each load
-  std::vector<std::string> settings;          ///< "variable=value" of values that were measured, as given
-  std::vector<std::pair<int, double>> values; ///< these: index of the variable, value
-  std::vector<std::string> limit_states;      ///< of which any failed if it was not held; empty: those of the study's system
+  long times = 1;                             ///< number of past loads of this kind
+  std::vector<std::string> anew;              ///< names of variables with independent values in each load
+  std::vector<std::string> settings;          ///< measured values as given: "variable=value"
+  std::vector<std::pair<int, double>> values; ///< as `settings`: index of the variable, value
+  std::vector<std::string> limit_states;      ///< limit states of the past loads; empty: all of the study's system
   Location where;
 };
 
-/// Settings in the table of a study kind; each kind derives its own (study_kind.h).
+/// Settings of a study kind, read from its table. Each kind derives its own type (study_kind.h).
 struct KindSettings {
-  Location where; ///< location of the table, or of the study if it has none
+  Location where; ///< location of the kind's table, or of the study if there is none
 
   KindSettings() = default;
   KindSettings(const KindSettings&) = default;
   KindSettings& operator=(const KindSettings&) = default;
   virtual ~KindSettings() = default;
-  /// Returns true if the samples requested depend on computing time.
+  /// Returns true if computing time decides when the study ends, so that repetitions differ.
   [[nodiscard]] virtual bool ends_by_clock() const { return false; }
 };
 
@@ -138,9 +137,9 @@ struct Study {
   std::string text;
   std::string title;
   std::string kind;
-  std::vector<std::string> models; ///< file paths
+  std::vector<std::string> models; ///< paths of the model files
   long seed = 1;
-  std::string failed = "bounds"; ///< how runs that do not reach their end are counted
+  std::string failed = "bounds"; ///< how runs without a result are counted: bounds, safe, unsafe, or stop
   std::vector<Variable> variables;
   std::vector<Correlation> correlations;
   std::vector<Response> responses;

@@ -26,10 +26,10 @@ namespace fs = std::filesystem;
 using namespace assess;
 using Align = TextTable::Align;
 
-constexpr std::size_t k_shown_events = 8, k_shown_reasons = 6, k_shown_sentences = 2; // the screen has thirty lines
+constexpr std::size_t k_shown_events = 8, k_shown_reasons = 6, k_shown_sentences = 2; // limits that keep the output within thirty lines
 
-// Creates the output folder before hours of computation, so that an invalid folder is reported at once. Removes the folder if it remains
-// empty.
+// Creates the output folder before computations that may take hours, so that an invalid folder is reported at once. Removes the folder if
+// nothing was written to it.
 class OutputFolder {
 public:
   explicit OutputFolder(const fs::path& path) : path_(path) {
@@ -72,7 +72,7 @@ std::vector<Evidence> accepted_evidence(const AssessOptions& options) {
   return accepted;
 }
 
-// Departure and arrival of the papers are the voyage.
+// Takes departure and arrival from the shipping document as the limits of the voyage.
 void take_shipment(const std::string& file, AssessmentOptions& options) {
   options.shipment = read_shipment(file);
   const Shipment& s = options.shipment;

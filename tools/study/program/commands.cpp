@@ -43,7 +43,7 @@ bool is_database(const std::string& file) {
   return stream.read(head, sizeof head) && std::string(head, 15) == "SQLite format 3";
 }
 
-// Reports a store that cannot be used, with the options that help.
+// Converts a store error to a message that lists the options with which the store could be used.
 FileError with_options(const StoreError& error) {
   std::string options;
   for (const StoreMode mode : error.helps()) options += mode == StoreMode::changed ? "--changed, " : "--restart, ";
