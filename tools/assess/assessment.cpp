@@ -17,8 +17,8 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_same_margin = 0.02; // permitted difference between a run with error estimate and the same run among the samples
-constexpr double k_still = 1e-3;       // m/s; slower bodies are regarded as at rest before the next event
+constexpr double k_same_margin = 0.02; // largest relative difference between the margins of the two computations of a voyage
+constexpr double k_still = 1e-3;       // m/s; a body that is slower at the end of an event counts as at rest
 
 void stop_if_asked(const AssessmentOptions& options, const std::string& where) {
   if (!options.stop) return;
@@ -86,7 +86,8 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
       if (const std::string unseen = check_gravity(record, model); !unseen.empty()) a.assumptions.push_back(unseen);
 }
 
-// Evaluates shared frictions in an event after all models. Discards the traces, which would be large for a whole voyage.
+// Evaluates the shared frictions in event `e`, after it was simulated in all models. Deletes the friction histories, which would be too
+// large for a whole voyage.
 void pass_planes(SharedFrictions& shared, std::size_t e, Assessment& a) {
   std::vector<const std::vector<SampledFriction>*> traces;
   std::vector<const DriveHistory*> histories;
@@ -120,7 +121,7 @@ void pass_events(const AssessmentOptions& options, Assessment& a) {
   }
 }
 
-// Repeats the voyage by the method used for samples, as a check.
+// Repeats the voyage by the method used for samples. If the results differ, the assessment cannot be trusted.
 void check_against_samples(Assessment& a) {
   const VoyageSummary twin =
       a.by_samples ? *a.by_samples : voyage_with(a.models, a.histories, *a.uncertain, a.uncertain->nominal(), a.shared).summary;
@@ -170,7 +171,7 @@ void assume(Assessment& a) {
   for (const DrivenModel& model : a.models)
     for (const std::string& limit : model.assumed_limits)
       a.assumptions.push_back("'" + model.name + "': the limit '" + limit + "' is assumed.");
-  constexpr double k_unlikely = 0.01; // probability in each tail
+  constexpr double k_unlikely = 0.01; // probability in each tail; nominal values beyond this quantile are reported
   for (std::size_t i = 0; i < a.uncertain->values().size(); ++i) {
     const UncertainValue& value = a.uncertain->values()[i];
     if (value.nominal >= a.uncertain->quantile(i, k_unlikely) && value.nominal <= a.uncertain->quantile(i, 1.0 - k_unlikely)) continue;

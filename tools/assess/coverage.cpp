@@ -12,8 +12,9 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_alive = 0.05 * k_gravity;          // m/s² from rest; any transport by road, rail or crane moves a recorder more
-constexpr double k_hours = 7200.0, k_minutes = 120.0; // s; above these durations text uses hours or minutes
+// m/s²; any road, rail or crane transport causes larger deviations from the reading at rest
+constexpr double k_alive = 0.05 * k_gravity;
+constexpr double k_hours = 7200.0, k_minutes = 120.0; // durations, s, above which texts use hours or minutes
 
 std::string span_text(double seconds) {
   return seconds > k_hours     ? rounded_text(seconds / 3600.0, 4) + " h"
@@ -35,7 +36,7 @@ std::optional<Stamp> instant(const std::string& text) {
 
 MissingEvidence missing(const std::string& reason, const std::string& remedy) { return {Evidence::coverage, reason, remedy}; }
 
-// Returns the largest deviation of an axis from its reading at rest, m/s². A tilt or an offset of the sensor does not move the recorder.
+// Returns the largest deviation of an axis from its reading at rest, m/s². A tilt or an offset of the sensor causes none.
 double largest_motion(const RecordEvents& record) {
   double most = 0.0;
   for (std::size_t i = 0; i < record.recording.layout.axes.size(); ++i) {
@@ -50,7 +51,7 @@ double length_of(const Voyage& voyage) {
   return voyage.is_clock ? 1e-9 * static_cast<double>(voyage.to_ns - voyage.from_ns) : voyage.to - voyage.from;
 }
 
-// Intervals of the voyage that no record covers, s from its begin: the first one, and the sum of all.
+// Intervals of the voyage without records: the first one, in s from the begin of the voyage, and the sum of all.
 struct Uncovered {
   double from = 0.0, to = 0.0, sum = 0.0;
 };
@@ -59,7 +60,7 @@ Uncovered uncovered_of(const std::vector<RecordEvents>& records, const Voyage& v
   std::vector<std::array<double, 2>> spans;
   for (const RecordEvents& record : records) {
     const double start = voyage.is_clock ? 1e-9 * static_cast<double>(*record.clock_ns - voyage.from_ns) : -voyage.from;
-    const double slack = record.rate > 0.0 ? 1.5 / record.rate : 0.0; // a row represents the sampling interval around it
+    const double slack = record.rate > 0.0 ? 1.5 / record.rate : 0.0; // a row represents the sampling interval around its time
     spans.push_back({start + record.recording.facts.first - slack, start + record.recording.facts.last + slack});
   }
   std::sort(spans.begin(), spans.end());

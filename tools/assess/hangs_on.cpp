@@ -1,5 +1,5 @@
-// Finds the uncertain number on which the decision depends: the one that changes the decision closest to its nominal value, with all other
-// numbers constant. Uses bisection between the nominal value and an end of the distribution.
+// Finds the uncertain numbers that change the decision if varied alone within the middle 99 % of their distribution, and the values at
+// which it changes, by bisection between the nominal value and each end.
 #include "tools/assess/hangs_on.h"
 
 #include "mbd/base/shown_text.h"
@@ -12,8 +12,8 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_tail = 0.005;   // probability in each tail; values beyond are not examined
-constexpr double k_located = 0.01; // of the distance between the nominal value and that end
+constexpr double k_tail = 0.005;   // tail probability of the ends of the distribution
+constexpr double k_located = 0.01; // accuracy, relative to the distance from the nominal value to the end
 
 struct Turn {
   double value = 0.0;

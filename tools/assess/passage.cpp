@@ -12,7 +12,7 @@ namespace steplap::assess {
 
 namespace {
 
-// Speeds are relative to the driven body, which may move uniformly.
+// Returns the largest speed of a body relative to the driven body, m/s.
 double still_moving(const System& system, const State& state, const std::string& driven) {
   std::size_t base = 0;
   for (std::size_t i = 1; i < system.bodies.size(); ++i)
@@ -39,12 +39,12 @@ LimitPassage limit_of(const CriterionResult& criterion, bool is_assumed, const O
   return limit;
 }
 
-// Returns true for findings caused by the removal of replaced elements.
+// Returns true for findings that only result from the removal of replaced elements.
 bool is_of_replaced(const Finding& finding) { return finding.code == "unused_signal" || finding.code == "unused_marker"; }
 
 constexpr std::array<const char*, 3> k_pose = {".x", ".y", ".theta"};
 
-// Poses of the moving bodies in the sample next to time t, s.
+// Returns the poses of the moving bodies at the output sample nearest to time t, s.
 std::vector<BodyPose> poses_at(const System& system, const Trajectory& samples, double t) {
   const auto& times = samples.times();
   if (times.empty()) return {};
@@ -66,7 +66,7 @@ std::vector<BodyPose> poses_at(const System& system, const Trajectory& samples, 
   return poses;
 }
 
-// Returns the channels read from the samples: poses of all bodies, and those needed by shared frictions.
+// Returns the channels to be written: poses of all bodies, and those that shared frictions need.
 std::vector<std::string> sampled_channels(const Model& model, const std::vector<std::string>& traced) {
   std::vector<std::string> channels = traced_channels(traced);
   for (const Body& body : model.bodies)
@@ -119,7 +119,8 @@ void Traveller::look(const Report& report, Passage& passage) {
     p.margin = joint.smallest_margin;
     p.at = joint.time_of_smallest;
     if (joint.has_slipped)
-      p.slid = portable::hypot(joint.slid_x - slid_x_[i], joint.slid_y - slid_y_[i]); // otherwise the difference is rounding or elastic
+      // a joint that has not slipped may have moved by rounding or elastically; that is not counted
+      p.slid = portable::hypot(joint.slid_x - slid_x_[i], joint.slid_y - slid_y_[i]);
     slid_x_[i] = joint.slid_x, slid_y_[i] = joint.slid_y;
     p.slid_total = slid_total_[i] += p.slid;
     if (const ChannelRange* const left = report.find(joint.joint + ".overlap_left")) p.overlap_left = left->final;

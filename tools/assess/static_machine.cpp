@@ -17,7 +17,8 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_beyond = -1e-3; // reserve of friction that has slid during loading; by how much the limit was exceeded is not known
+// reserve reported for friction that has slid during loading; the amount by which its limit was exceeded is unknown
+constexpr double k_beyond = -1e-3;
 
 int channel_index(const System& system, const std::string& name) {
   for (std::size_t i = 0; i < system.channels.size(); ++i)
@@ -71,7 +72,7 @@ void StaticMachine::find_watches() {
     if (dynamic_cast<const StepLapJoint*>(entry.element.get())) {
       step_lap.insert(name);
       const int usage = channel_index(*system_, name + ".u");
-      if (usage < 0) continue; // it holds any load
+      if (usage < 0) continue; // the joint has unlimited capacity
       joints_.push_back(name);
       add(LimitKind::slips, name, usage, -1);
       continue;
@@ -106,7 +107,7 @@ std::vector<double> StaticMachine::left_of(const Probe& probe) const {
 }
 
 Probe StaticMachine::probe(const State& start, const Vec2& pull) {
-  struct Restored { // restores the machine in every case
+  struct Restored { // restores gravity at the end of the scope, also after an exception
     System& system;
     Vec2 gravity;
     ~Restored() { system.gravity = gravity; }

@@ -19,14 +19,14 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_close = 1e-6;      // of a margin; accuracy of an equilibrium
-constexpr double k_at_bound = 0.98;   // utilisation from which friction counts as sliding; forces are asked for to 2 %
-constexpr double k_just_below = 1e-3; // distance below the first limit of a direction, relative, at which the other ways are computed
+constexpr double k_close = 1e-6;      // relative accuracy of a margin, from the accuracy of equilibria
+constexpr double k_at_bound = 0.98;   // utilisation from which friction is at its limit; forces of sliding friction are accurate to 2 %
+constexpr double k_just_below = 1e-3; // relative distance below the first limit at which the other loading paths are computed
 
-// Returns true for units of positions and forces. Velocities and accelerations have no meaning in an equilibrium.
+// Returns true for channels that have a meaning at rest: those whose unit contains no rate.
 bool is_of_rest(const std::string& unit) { return unit.find("/s") == std::string::npos; }
 
-// Returns the results of an equilibrium in the form of a run from the equilibrium without acceleration.
+// Returns the equilibrium as the result of a run that starts and ends there.
 RunResult as_run(const StaticMachine& machine, const Probe& probe) {
   RunResult result;
   result.trajectory = std::make_unique<Trajectory>(machine.system(), std::vector<std::string>{""});
@@ -75,7 +75,7 @@ std::string criterion_text(const CriterionResult& c, const std::string& begin) {
   return begin + ": " + c.text + " (" + what + (c.value ? " is " + number(*c.value, c.unit) : " has no value") + ")";
 }
 
-// Computes one load in several ways.
+// Proves one load case along several loading paths.
 class CaseProof {
 public:
   CaseProof(StaticMachine& machine, const LoadedModel& loaded, const StaticLoad& load) : machine_(machine), loaded_(loaded) {
@@ -88,7 +88,7 @@ public:
     grown_ = a > 0.0 ? machine_.ramped(case_.load.pull) : machine_.at_rest();
     if (a > 0.0) follow(a);
     if (!grown_.rest) return std::move(case_);
-    case_.verdict = Verdict::hold; // until a check fails
+    case_.verdict = Verdict::hold; // set before the checks, which can only worsen it
     ways_.push_back(&grown_);
     ask_other_ways();
     collect();
@@ -104,7 +104,7 @@ private:
     case_.why = why;
   }
 
-  // Finds the element that gives way first while the load grows.
+  // Grows the load to find the element that slips, slides or lifts first.
   void follow(double a) {
     const StaticRay ray = grow_pull(machine_, case_.load.pull / a, a);
     if (!ray.limits.empty()) {
@@ -146,7 +146,7 @@ private:
       StaticJoint one{joint, std::numeric_limits<double>::infinity()};
       for (const Probe* way : ways_) {
         const double margin = machine_.value(*way, joint + ".margin");
-        if (!(margin >= one.margin)) one.margin = margin; // NaN is the worst
+        if (!(margin >= one.margin)) one.margin = margin; // also true if margin is NaN
       }
       case_.joints.push_back(one);
     }
@@ -168,9 +168,10 @@ private:
     find_tipping();
   }
 
-  // The search for rest puts the whole load on at once, and can pass the rest of a load that grows. Friction that slides under a growing load
-  // ends at its bound, against its slide from `start`. Where it ends otherwise, friction carries less than under a growing load, and what holds
-  // the machine next to it carries more. So limits on friction forces are then open, and all others are on the safe side.
+  // Checks friction that slid during a search for equilibrium. The search applies the whole load at once and can overshoot the equilibrium
+  // of a slowly growing load. Under a growing load, sliding friction is at its limit and opposes its slide from `start`. If it is not, it
+  // carries less than it would, and parallel elements carry more. Limits on friction forces then remain open; other results are
+  // conservative.
   void check_slides(const Probe& way, const State& start) {
     for (const FrictionMargin& margin : way.rest->margins) {
       const std::vector<int>& slid = way.rest->slid;
@@ -188,7 +189,7 @@ private:
     }
   }
 
-  // Leaves a limit on a friction force open, unless that friction cannot reach it.
+  // Sets the verdict to open if the criterion limits a friction force that can reach this limit.
   void check_friction_limit(const Criterion& criterion, const Probe& way, const std::string& passed) {
     for (std::size_t f = 0; f < machine_.system().frictions.size(); ++f) {
       const std::string& name = name_of(static_cast<int>(f));
@@ -207,7 +208,8 @@ private:
     return machine_.system().frictions[static_cast<std::size_t>(margin.friction)];
   }
 
-  // Returns true if friction along a line acts in the direction in which it has slid since `start`.
+  // Returns true if friction along a line acts in the direction in which it slid since `start`, which friction cannot do under a growing
+  // load.
   [[nodiscard]] bool pushes_on(const Probe& way, const State& start, const FrictionMargin& margin, const std::string& name) const {
     const FrictionElement& friction = *unit_of(margin).friction;
     if (friction.dimension() != 1) return false;
@@ -217,7 +219,7 @@ private:
     place_bodies(start.q, start.v, before);
     place_bodies(rest.q, rest.v, now);
     const double slid = evaluate_row<false>(row, now.data()).value - evaluate_row<false>(row, before.data()).value;
-    return machine_.value(way, name + ".friction") * slid > 0.0; // false for NaN: no such channel
+    return machine_.value(way, name + ".friction") * slid > 0.0; // NaN, if there is no such channel, gives false
   }
 
   void collect_reactions() {
@@ -236,7 +238,7 @@ private:
     }
   }
 
-  // Computes tipping under the apparent gravity.
+  // Determines which parts tip under gravity plus pull.
   void find_tipping() {
     if (!(case_.apparent.norm() > 0.0)) return;
     Model model = loaded_.model;
@@ -285,13 +287,14 @@ private:
   StaticCase case_;
 };
 
-// Returns true if the machine also has an intact equilibrium when the pull grows from the opposite pull.
+// Returns true if the machine also has an equilibrium, with all limits kept, when the load grows from the opposite pull −`pull` instead of
+// from zero.
 bool is_borne_otherwise(StaticMachine& machine, const Vec2& pull) {
   const auto is_intact = [](const Probe& probe) {
     return probe.rest && std::all_of(probe.left.begin(), probe.left.end(), [](double left) { return left > 0.0; });
   };
   const Probe turned = machine.ramped(-pull);
-  if (!is_intact(turned)) return true; // the opposite load would change the machine
+  if (!is_intact(turned)) return true; // the opposite pull would exceed a limit itself, so there is no second path to compare
   return is_intact(machine.ramped_from(turned, pull));
 }
 

@@ -7,10 +7,12 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_first_step = 1.0 / 16.0; // of the machine's gravity, or of the largest pull if there is no gravity
+// first step of the pull, as a fraction of gravity, or of the largest pull if there is no gravity
+constexpr double k_first_step = 1.0 / 16.0;
 constexpr double k_growth = 1.3;
-constexpr double k_width = 1e-6;    // of the acceleration; accuracy of a limit
-constexpr double k_at_limit = 1e-4; // of the reserve at rest; a hundred times the reserve at the end of an interval of width k_width
+constexpr double k_width = 1e-6; // relative accuracy of the acceleration of a limit
+// a reserve below this fraction of its value at rest is at its limit; 100 times the change over an interval of width k_width
+constexpr double k_at_limit = 1e-4;
 constexpr int k_most_probes = 80;
 
 struct Point {
@@ -54,13 +56,13 @@ private:
     found_.limits.push_back({watch.kind, watch.element, "'" + watch.element + "' " + name_of(watch.kind), a, error});
   }
 
-  // Returns the acceleration at which the linearly extrapolated reserve of watch w is zero.
+  // Returns the acceleration at which the reserve of monitored limit w, extrapolated linearly, is zero.
   [[nodiscard]] static double foreseen(const Point& before, const Point& low, std::size_t w) {
     const double slope = (low.probe.left[w] - before.probe.left[w]) / (low.a - before.a);
     return slope < 0.0 ? low.a - low.probe.left[w] / slope : low.a - 1.0;
   }
 
-  // Returns the smallest predicted limit of the remaining watches, or that of w only.
+  // Returns the smallest predicted acceleration of the limits that were not reached yet, or of limit `only`.
   [[nodiscard]] double foreseen(const Point& before, const Point& low, std::optional<std::size_t> only) const {
     double first = low.a - 1.0;
     for (std::size_t w = 0; w < is_reached_.size(); ++w) {
@@ -71,7 +73,8 @@ private:
     return first;
   }
 
-  // Bisects between a point at which `is_good` is true and one at which it is false.
+  // Bisects between `low`, where `is_good` is true, and `high`, where it is false. Two of three iterations use a prediction instead of the
+  // midpoint.
   template <class IsGood> void close_in(Point& low, Point& high, std::optional<std::size_t> only, const IsGood& is_good) {
     Point before = low;
     for (int i = 0; i < k_most_probes; ++i) {
@@ -93,7 +96,7 @@ private:
     }
   }
 
-  // Locates limits of watches between two equilibria.
+  // Locates the limits that are reached between two equilibria.
   void look_between(const Point& from, const Point& to) {
     for (std::size_t w = 0; w < is_reached_.size(); ++w) {
       if (is_reached_[w] != 0 || to.probe.left[w] > 0.0) continue;
