@@ -26,7 +26,7 @@ Node text_node(const std::string& key, const std::string& text) {
   return node;
 }
 
-// Returns the child with that key, which is added if there is none.
+// Returns the child with this key, and adds it if there is none.
 Node& child_of(Node& parent, const std::string& key, Node::Type type) {
   if (Node* found = parent.find(key)) return *found;
   Node& added = parent.children.emplace_back();
@@ -49,7 +49,8 @@ const Node* longest_entry(const Node& array, const std::string& rest) {
   return best;
 }
 
-// Copies the whole key to which the path leads from `whole` to `changes`. Returns false if it does not exist.
+// Copies the top-level key that contains `path` from `whole` to `changes`, with its complete value. Returns false if the key does not
+// exist.
 bool take_over(const Node& whole, const std::string& path, Node& changes) {
   const std::size_t point = path.find('.');
   const std::string top = path.substr(0, point), rest = point == std::string::npos ? "" : path.substr(point + 1);
@@ -82,12 +83,12 @@ bool take_over(const Node& whole, const std::string& path, Node& changes) {
 
 std::string path_in(const std::string& assignment) { return assignment.substr(0, assignment.find('=')); }
 
-// Returns true if the text, read as a file of that name, gives that model.
+// Returns true if reading `text` as the file `file` gives the model `wanted`.
 bool makes(const std::string& text, const std::string& file, const Model& wanted) {
   try {
     return changes_between(parse_given_model(text, file, program_catalogue()), wanted).empty();
   } catch (const ModelError&) {
-    return false; // it cannot be read
+    return false; // the text is not a valid model
   }
 }
 
