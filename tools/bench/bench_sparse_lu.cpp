@@ -17,7 +17,7 @@
 namespace steplap {
 namespace {
 
-constexpr int k_solutions = 6; // stages of rodas5p that solve a linear system with the same factors
+constexpr int k_solutions = 6; // number of stages of rodas5p, each of which solves a linear system with the same factors
 
 struct MatrixPosition {
   int row = 0, column = 0;
@@ -25,8 +25,8 @@ struct MatrixPosition {
 
 struct Matrix {
   int n = 0;
-  std::vector<MatrixPosition> entries;     ///< positions may occur repeatedly; their values are added
-  std::vector<std::vector<double>> values; ///< values for several steps
+  std::vector<MatrixPosition> entries;     ///< positions of the entries; values at equal positions are added
+  std::vector<std::vector<double>> values; ///< values of the entries for several steps
 };
 
 Matrix coupled(const std::vector<std::pair<int, int>>& pairs, int bodies) {
@@ -63,7 +63,7 @@ Matrix grid_of(int side) {
   return coupled(pairs, side * side);
 }
 
-// Returns the largest |A x − b| for the values of one step, with b = 1 in all components.
+// Returns max |A x − b| for the matrix of one step, with b = 1 in all components.
 double residual(const Matrix& m, std::size_t step, const std::vector<double>& x) {
   std::vector<double> left(static_cast<std::size_t>(m.n), -1.0);
   for (std::size_t k = 0; k < m.entries.size(); ++k) left[m.entries[k].row] += m.values[step][k] * x[m.entries[k].column];

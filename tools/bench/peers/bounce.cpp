@@ -12,7 +12,7 @@ namespace {
 
 constexpr double k_gravity = 9.81, k_stiffness = 1e5, k_damping = 20.0;
 constexpr double k_end = 10.0;
-constexpr double k_contact_step = 1e-3; // first step after landing; contact lasts 10 ms
+constexpr double k_contact_step = 1e-3; // first step after landing, s; contact lasts 10 ms
 
 enum class Mode { flight, contact, held };
 

@@ -35,7 +35,7 @@ double cpu_ms_at(const std::vector<Rung>& rungs, const std::string& problem, con
   double best = -1.0;
   for (const auto& [e, ms] : front)
     if (e <= error && (best < 0.0 || ms < best)) best = ms;
-  // Between neighbours on either side of the error.
+  // Interpolates between the neighbouring points on both sides of the error.
   for (std::size_t i = 0; i + 1 < front.size(); ++i) {
     const auto& low = front[i];
     const auto& high = front[i + 1];
