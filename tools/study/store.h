@@ -14,7 +14,7 @@ struct sqlite3_stmt;
 
 namespace steplap::study {
 
-/// What to do with an existing store. run: continue; throw if the study has changed. changed: continue even then, with the samples that are
+/// Treatment of an existing store. run: continue; throw if the study has changed. changed: continue even then, with the samples that are
 /// still valid. restart: delete all samples.
 enum class StoreMode { run, changed, restart };
 

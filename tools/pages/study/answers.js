@@ -28,7 +28,7 @@ study.answers = (() => {
   const all = (list) => list;
 
   // [role, function that selects findings, function that forms a sentence]. The first role that occurs in the study determines the answer.
-  // Of several probabilities by one method the plain one is used; the others are corrections to it.
+  // If one method gives several probabilities, the plain one is used; the others are corrections to it.
   const sentences = [
     [
       'probability', (list) => best(list.filter((f) => !f.quantity.includes('('))),
