@@ -101,7 +101,7 @@ void pass_planes(SharedFrictions& shared, std::size_t e, Assessment& a) {
 }
 
 void pass_events(const AssessmentOptions& options, Assessment& a) {
-  std::vector<Traveller> travellers;
+  std::vector<VoyageModel> travellers;
   for (const DrivenModel& model : a.models) travellers.emplace_back(model);
   SharedFrictions shared(a.shared);
   long done = 0;
@@ -111,8 +111,8 @@ void pass_events(const AssessmentOptions& options, Assessment& a) {
       if (options.progress) options.progress("events", done++, static_cast<long>(a.events.size() * a.models.size()));
       Passage passage = travellers[m].pass(a.histories[m][e], options.estimating);
       passage.event = e, passage.model = m;
-      if (passage.still_moving > k_still && !a.histories[m][e].goes_on)
-        passage.findings.push_back("The machine still moves at " + rounded_text(passage.still_moving, 2) +
+      if (passage.final_speed > k_still && !a.histories[m][e].goes_on)
+        passage.findings.push_back("The machine still moves at " + rounded_text(passage.final_speed, 2) +
                                    " m/s when the event is over: raise 'settle' of [[recorder]] if the next event begins from rest.");
       worsen(a.summary, summary_of(passage, e + 1, a.models[m].name));
       a.events[e].passages.push_back(std::move(passage));
@@ -226,15 +226,15 @@ Assessment assess(const std::vector<std::string>& records, const std::vector<std
   const StopScope stopping(options.stop);
   Assessment a;
   read_inputs(records, models, options, a);
-  find_unseen(options, a);
+  find_gaps_before_runs(options, a);
   list_events(a);
   find_events_that_matter(options, a);
   find_rounded_tops(a.records, a.missing);
   pass_events(options, a);
   sample(options, a);
-  find_undecided(options, a);
+  check_bandwidth_and_position(options, a);
   decide(a);
-  find_what_it_hangs_on(options, a);
+  find_dependence(options, a);
   assume(a);
   return a;
 }

@@ -27,12 +27,12 @@ struct AssessmentOptions {
   Estimating estimating = Estimating::cheap;
   SamplingOptions sampling;
   std::function<void(const std::string& what, long done, long all)> progress;
-  std::function<std::string()> stop; ///< polled during the work; a text other than "" stops it and becomes the reason
+  std::function<std::string()> stop; ///< called repeatedly; a non-empty text stops the assessment and becomes its reason
 };
 
 /// A shock event with its results in all models. Events of all records are ordered by time.
 struct VoyageEvent {
-  std::size_t record = 0, event = 0; ///< indices
+  std::size_t record = 0, event = 0; ///< indices of the record, and of the event in it
   std::vector<Passage> passages;     ///< one for each model
   std::vector<Probability> slip;     ///< index of the record, and of the event in it
   std::vector<SharedPassage> shared; ///< probability of slip in each model; `runs` is 0 if no samples were simulated

@@ -185,7 +185,7 @@ Json passage(const Passage& p, const Assessment& a, double begin, const Probabil
           {"findings", p.findings},
           {"worst_time", p.worst_instant ? Json(begin + *p.worst_instant) : Json(nullptr)},
           {"poses", poses},
-          {"still_moving", p.still_moving},
+          {"still_moving", p.final_speed},
           {"slip_probability", slip ? probability(*slip) : Json(nullptr)}};
 }
 

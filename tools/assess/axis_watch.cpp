@@ -79,17 +79,17 @@ double AxisWatch::others_range(std::size_t axis) const {
   return range;
 }
 
-std::optional<AxisWatch::Stuck> AxisWatch::stuck(std::size_t index) const {
+std::optional<AxisWatch::DeadInterval> AxisWatch::stuck(std::size_t index) const {
   const Axis& axis = axes_[index];
-  if (axis.changes == 0) return rows_ >= k_many ? std::optional(Stuck{axis.now.from, axis.now.to}) : std::nullopt;
-  if (axis.moved.others >= std::max(k_moves, k_coarse * axis.step)) return Stuck{axis.moved.from, axis.moved.to};
+  if (axis.changes == 0) return rows_ >= k_many ? std::optional(DeadInterval{axis.now.from, axis.now.to}) : std::nullopt;
+  if (axis.moved.others >= std::max(k_moves, k_coarse * axis.step)) return DeadInterval{axis.moved.from, axis.moved.to};
   for (const NoiseWatch& noise : axis.noise) {
     const auto silence = noise.silence(axis.step);
     if (!silence) continue;
     // A constant value at either end of the axis' range is clipped, not stuck.
     const bool is_constant = silence->least == silence->greatest;
     if (is_constant && (silence->least == axis.least || silence->greatest == axis.greatest)) continue;
-    return Stuck{silence->from, silence->to};
+    return DeadInterval{silence->from, silence->to};
   }
   return {};
 }

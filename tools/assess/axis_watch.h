@@ -19,11 +19,11 @@ public:
   /// Must be called after the last sample.
   void finish();
 
-  struct Stuck {
-    double from = 0.0, to = 0.0; ///< s
+  struct DeadInterval {
+    double from = 0.0, to = 0.0; ///< begin and end of the interval, s
   };
   /// Returns the interval in which the axis was constant while others changed, or had no noise; nothing if there is none.
-  [[nodiscard]] std::optional<Stuck> stuck(std::size_t axis) const;
+  [[nodiscard]] std::optional<DeadInterval> stuck(std::size_t axis) const;
   /// Returns the median of the first second, m/s². A mean would be changed by a shock in this second.
   [[nodiscard]] double rest(std::size_t axis) const;
   /// Returns true if the axis changes by at most four steps of its converter while another changes at least twenty times as much.

@@ -52,10 +52,10 @@ double length_of(const Voyage& voyage) {
 }
 
 // Intervals of the voyage without records: the first one, in s from the begin of the voyage, and the sum of all.
-struct Uncovered {
+struct UncoveredTime {
   double from = 0.0, to = 0.0, sum = 0.0;
 };
-Uncovered uncovered_of(const std::vector<RecordEvents>& records, const Voyage& voyage) {
+UncoveredTime uncovered_of(const std::vector<RecordEvents>& records, const Voyage& voyage) {
   const double length = length_of(voyage);
   std::vector<std::array<double, 2>> spans;
   for (const RecordEvents& record : records) {
@@ -64,7 +64,7 @@ Uncovered uncovered_of(const std::vector<RecordEvents>& records, const Voyage& v
     spans.push_back({start + record.recording.facts.first - slack, start + record.recording.facts.last + slack});
   }
   std::sort(spans.begin(), spans.end());
-  Uncovered u;
+  UncoveredTime u;
   double reached = 0.0;
   const auto add = [&](double from, double to) {
     if (to <= from) return;
@@ -150,7 +150,7 @@ std::optional<MissingEvidence> uncovered(const std::vector<RecordEvents>& record
   if (!voyage->is_clock && records.size() > 1)
     return missing("The voyage is given in seconds of one record, and there are " + std::to_string(records.size()) + ".",
                    "Give two dates with times of day.");
-  if (const Uncovered u = uncovered_of(records, *voyage); u.sum > 0.0)
+  if (const UncoveredTime u = uncovered_of(records, *voyage); u.sum > 0.0)
     return missing(seen + " The journey was said to last " + voyage->text + ": " + span_text(u.sum) + " of it are not covered, the first " +
                        span_text(u.to - u.from) + " from " +
                        (voyage->is_clock ? stamp_text(voyage->from_ns + static_cast<std::int64_t>(std::llround(u.from * 1e9))).substr(0, 19)

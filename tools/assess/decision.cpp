@@ -24,16 +24,16 @@ struct Reading {
   char axis = 'x';
   double bandwidth = 0.0; ///< bandwidth of the record, Hz
   bool is_known = true;
-  bool is_beneath = false; ///< true if shocks below the event threshold might exceed the limit, because they were not searched
+  bool may_be_exceeded_below = false; ///< true if shocks below the event threshold might exceed the limit, because they were not searched
   static constexpr std::size_t k_no_event = static_cast<std::size_t>(-1);
 };
 
-constexpr double k_told = 95.0; // smallest useful bandwidth for peaks, Hz; with less, one impact can read 18 g or 1.5 g
+constexpr double k_least_bandwidth = 95.0; // smallest useful bandwidth for peaks, Hz; with less, one impact can read 18 g or 1.5 g
 
 // Returns true if the criterion must be applied to the unfiltered rows: no filter was applied, or one whose bandwidth is too small for
 // peaks.
-bool looks_at_rows(const DecisionCriterion& c, const RecordEvents& record) {
-  return c.quantity == "peak" && c.bandwidth == "record" && (!record.is_filtered || record.bandwidth < k_told);
+bool applies_to_rows(const DecisionCriterion& c, const RecordEvents& record) {
+  return c.quantity == "peak" && c.bandwidth == "record" && (!record.is_filtered || record.bandwidth < k_least_bandwidth);
 }
 
 double value_of(const DecisionCriterion& c, const AxisEvent& axis) {
@@ -68,14 +68,14 @@ void check_record(const DecisionCriterion& c, const Assessment& a, std::size_t r
   const std::vector<AxisColumn>& axes = record.recording.layout.axes;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     if (c.axis != "any" && axes[i].axis != c.axis.front()) continue;
-    if (looks_at_rows(c, record)) {
+    if (applies_to_rows(c, record)) {
       take(largest, largest_row(record, i), event_of_row(a, r, i), axes[i].axis, 0.5 * record.rate);
       continue;
     }
     for (std::size_t e = 0; e < a.events.size(); ++e)
       if (a.events[e].record == r)
         take(largest, value_of(c, record.events[a.events[e].event].event.axes[i]), e, axes[i].axis, record.bandwidth);
-    largest.is_beneath |= c.quantity == "peak" && record.rules.threshold > *c.at_most && largest_row(record, i) > *c.at_most;
+    largest.may_be_exceeded_below |= c.quantity == "peak" && record.rules.threshold > *c.at_most && largest_row(record, i) > *c.at_most;
   }
 }
 
@@ -118,7 +118,7 @@ Reason judge_reading(const DecisionCriterion& c, const Assessment& a) {
                   largest.value / *c.at_most);
   if (!largest.is_known)
     return judged(c, Decision::open, "The records lack data that '" + c.name + "' requires: an axis, or high frequencies.");
-  if (largest.is_beneath)
+  if (largest.may_be_exceeded_below)
     return judged(c, Decision::open,
                   "Shocks above " + shown(*c.at_most) +
                       " may lie below the threshold from which shocks are looked at. Lower the threshold.");
@@ -138,7 +138,7 @@ std::string joints_unknown(const Assessment& a) {
 }
 
 // Returns the reason why criteria on runs cannot be evaluated, for example because a record drove no model; "" if they can.
-std::string waves_unknown(const Assessment& a) {
+std::string runs_unknown(const Assessment& a) {
   for (const RecordEvents& record : a.records)
     if (record.recording.layout.is_peaks && !record.pulse)
       return "'" + record.file + "' holds peaks without a waveform, and no model was driven by them: a pulse can be assumed.";
@@ -147,7 +147,7 @@ std::string waves_unknown(const Assessment& a) {
 
 std::string unknown_of(const DecisionCriterion& c, const Assessment& a, const VoyageSummary& s) {
   if (!s.unknown.empty()) return s.unknown;
-  if (const std::string waves = waves_unknown(a); !waves.empty()) return waves;
+  if (const std::string waves = runs_unknown(a); !waves.empty()) return waves;
   return c.quantity == "acceptance" || c.quantity == "lift" ? "" : joints_unknown(a);
 }
 
@@ -230,8 +230,8 @@ Reason judge_criterion(const DecisionCriterion& c, const Assessment& a, const Vo
                           " is required.",
                       "The least margin of a joint is " + rounded_text(s.least_margin, 3) + ".");
   if (c.quantity == "acceptance") return judge_acceptance(c, s, unknown);
-  if (c.quantity == "slip_probability") return judge_probability(c, largest_slip(a), "slip in an event", waves_unknown(a));
-  const std::string of = "damage in the voyage", waves = waves_unknown(a);
+  if (c.quantity == "slip_probability") return judge_probability(c, largest_slip(a), "slip in an event", runs_unknown(a));
+  const std::string of = "damage in the voyage", waves = runs_unknown(a);
   return without_assumed_return(judge_probability(c, a.damage, of, waves), judge_probability(c, a.known_damage, of, waves));
 }
 
@@ -248,7 +248,7 @@ Reason judge_planes(const VoyageSummary& s) {
 }
 
 // Adds reasons that are not criteria of the file: for example, missing evidence prevents "energise".
-void add_own(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& reasons) {
+void add_rules_of_program(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& reasons) {
   const auto open = [&](const char* name, const std::string& text) {
     reasons.push_back({name, text, "rules of this program", Decision::open, {}, 0.0});
   };
@@ -263,7 +263,7 @@ void add_own(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& r
 std::vector<Reason> reasons_of(const Assessment& a, const VoyageSummary& s) {
   std::vector<Reason> reasons;
   for (const DecisionCriterion& c : a.criteria.criteria) reasons.push_back(judge_criterion(c, a, s));
-  add_own(a, s, reasons);
+  add_rules_of_program(a, s, reasons);
   std::stable_sort(reasons.begin(), reasons.end(),
                    [](const Reason& x, const Reason& y) { return x.outcome != y.outcome ? x.outcome > y.outcome : x.excess > y.excess; });
   return reasons;
@@ -281,7 +281,7 @@ Decision decision_by_criteria(const Assessment& assessment, const VoyageSummary&
 Decision decision_of(const Assessment& assessment, const VoyageSummary& summary) {
   Decision worst = decision_by_criteria(assessment, summary);
   std::vector<Reason> own;
-  add_own(assessment, summary, own);
+  add_rules_of_program(assessment, summary, own);
   for (const Reason& reason : own) worst = std::max(worst, reason.outcome);
   return worst;
 }

@@ -142,17 +142,17 @@ void refuse_other_drives(const Model& model, const Recorder& recorder, const std
 }
 
 // Returns true if the channel belongs to one of the removed elements.
-bool looks_at(const std::string& channel, const std::set<std::string>& gone) {
+bool belongs_to_any(const std::string& channel, const std::set<std::string>& gone) {
   return std::any_of(gone.begin(), gone.end(), [&](const std::string& name) { return channel.starts_with(name + "."); });
 }
 
-void take_out(Model& model, const Recorder& recorder, std::vector<std::string>& notes) {
+void remove_replaced(Model& model, const Recorder& recorder, std::vector<std::string>& notes) {
   const std::set<std::string> gone(recorder.replaces.begin(), recorder.replaces.end());
   std::erase_if(model.elements, [&](const ElementEntry& e) { return gone.contains(e.element->name); });
   std::set<const Element*> unused;
   for (const Plot* const plot : tables_of<Plot>(std::as_const(model))) unused.insert(plot); // signals used only by figures count as unused
   for (const Criterion* const c : tables_of<Criterion>(std::as_const(model))) {
-    if (!looks_at(c->channel, gone) && !gone.contains(c->element)) continue;
+    if (!belongs_to_any(c->channel, gone) && !gone.contains(c->element)) continue;
     notes.push_back("'" + c->name + "' is not asked: the record takes the place of what it looks at.");
     unused.insert(c);
   }
@@ -228,12 +228,12 @@ double trace_step(const DriveHistory& history) {
 
 std::string check_gravity(const RecordEvents& record, const DrivenModel& model) {
   // g: smallest reading of gravity; largest deviation from the expected reading, which allows for shocks in the first second
-  constexpr double k_seen = 0.7, k_other = 0.5;
+  constexpr double k_gravity_seen = 0.7, k_other = 0.5;
   const std::vector<AxisColumn>& axes = record.recording.layout.axes;
   double size = 0.0;
   for (std::size_t i = 0; i < axes.size(); ++i) size += record.rest[i] * record.rest[i];
-  if (model.given.header.gravity.norm() < k_seen * k_gravity || record.recording.layout.is_peaks) return "";
-  if (std::sqrt(size) < k_seen * k_gravity)
+  if (model.given.header.gravity.norm() < k_gravity_seen * k_gravity || record.recording.layout.is_peaks) return "";
+  if (std::sqrt(size) < k_gravity_seen * k_gravity)
     return "'" + record.file + "' has no gravity in it: that its axes point as '" + model.name + "' says could not be seen.";
   // At rest an accelerometer reads the reaction of its support, opposite to gravity.
   const Vec2 up = -model.given.header.gravity / model.given.header.gravity.norm();
@@ -264,7 +264,7 @@ DrivenModel driven_model(Model given, const std::string& name) {
   const auto marker = std::find_if(whole.markers.begin(), whole.markers.end(), [&](const Marker& m) { return m.name == found->marker; });
   driven.body = marker->body;
   driven.marker_angle = marker->angle + whole.find_body(driven.body)->angle;
-  take_out(given, driven.recorder, driven.notes);
+  remove_replaced(given, driven.recorder, driven.notes);
   begin_at_rest(given, driven.notes);
   refuse_other_drives(given, driven.recorder, driven.body);
   add_drive(given, k_along_x, driven.recorder, "x");

@@ -20,7 +20,7 @@ namespace steplap::assess {
 
 /// Acceleration of the marker along the ground's axes, m/s²: linear between equidistant samples from `begin` on, 0 elsewhere.
 struct DriveHistory {
-  double begin = 0.0, step = 0.0; ///< s
+  double begin = 0.0, step = 0.0; ///< time of the first sample, and sampling interval, s
   bool goes_on = false;           ///< true if the next event follows without an interval at rest
   std::vector<double> x, y;       ///< acceleration, m/s²
   std::vector<double> across; ///< acceleration normal to the plane, from the front of the sheets to their back, m/s²; empty if not used

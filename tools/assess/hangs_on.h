@@ -6,6 +6,6 @@
 namespace steplap::assess {
 
 /// Fills `hangs_on` of a decided assessment with sentences for the user.
-void find_what_it_hangs_on(const AssessmentOptions& options, Assessment& assessment);
+void find_dependence(const AssessmentOptions& options, Assessment& assessment);
 
 } // namespace steplap::assess

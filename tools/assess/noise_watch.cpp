@@ -64,12 +64,12 @@ void NoiseWatch::put(double t, double value) {
 // second one is deleted.
 void NoiseWatch::take_block(double value) {
   if (block_.rows == 0) block_.first = value;
-  const double x = value - block_.first, bend = value - 2.0 * value_before(1) + value_before(2);
-  block_.sum += x, block_.squares += x * x, block_.bends += bend * bend;
+  const double x = value - block_.first, second_difference = value - 2.0 * value_before(1) + value_before(2);
+  block_.sum += x, block_.squares += x * x, block_.second_differences += second_difference * second_difference;
   if (++block_.rows < k_block) return;
   const double count = static_cast<double>(block_.rows), mean = block_.sum / count;
   const double variance = std::max(0.0, block_.squares / count - mean * mean);
-  const bool is_white = block_.bends / count >= k_white * variance;
+  const bool is_white = block_.second_differences / count >= k_white * variance;
   block_ = {};
   if (!is_white || blocks_++ % stride_ != 0) return;
   deviations_.push_back(std::sqrt(variance));

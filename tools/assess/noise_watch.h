@@ -28,7 +28,7 @@ public:
   void finish();
 
   struct Silence {
-    double from = 0.0, to = 0.0;        ///< s
+    double from = 0.0, to = 0.0;        ///< begin and end of the interval, s
     double least = 0.0, greatest = 0.0; ///< smallest and largest value in the interval, in the unit of put()
     std::size_t rows = 0, repeats = 0;
   };
@@ -47,7 +47,7 @@ private:
   std::uint64_t history_ = 0;                     ///< one bit for each of the last 64 rows, 1 if it repeats; the last row is the lowest bit
   std::size_t rows_ = 0, repeats_ = 0, all_silent_ = 0;
   struct Block { ///< sums over the rows of a block: values minus the first one, their squares, and squared second differences
-    double first = 0.0, sum = 0.0, squares = 0.0, bends = 0.0;
+    double first = 0.0, sum = 0.0, squares = 0.0, second_differences = 0.0;
     std::size_t rows = 0;
   };
   Block block_;

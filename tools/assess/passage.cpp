@@ -13,7 +13,7 @@ namespace steplap::assess {
 namespace {
 
 // Returns the largest speed of a body relative to the driven body, m/s.
-double still_moving(const System& system, const State& state, const std::string& driven) {
+double final_speed(const System& system, const State& state, const std::string& driven) {
   std::size_t base = 0;
   for (std::size_t i = 1; i < system.bodies.size(); ++i)
     if (system.bodies[i].name == driven) base = i;
@@ -89,7 +89,7 @@ std::vector<FootPassage> feet_of(const Report& report) {
 
 } // namespace
 
-Passage Traveller::broken(const std::string& why) {
+Passage VoyageModel::broken(const std::string& why) {
   Passage passage;
   passage.reason = why;
   passage.trust = "Nothing is known of this event.";
@@ -97,7 +97,7 @@ Passage Traveller::broken(const std::string& why) {
   return passage;
 }
 
-void Traveller::look(const Report& report, Passage& passage) {
+void VoyageModel::look(const Report& report, Passage& passage) {
   const RunResult& result = report.run.result;
   const Overview overview = overview_of(report);
   passage.verdict = overview.verdict;
@@ -146,7 +146,7 @@ void Traveller::look(const Report& report, Passage& passage) {
     if (std::find(passage.findings.begin(), passage.findings.end(), cap) == passage.findings.end()) passage.findings.push_back(cap);
 }
 
-Passage Traveller::pass(const DriveHistory& history, Estimating estimating) {
+Passage VoyageModel::pass(const DriveHistory& history, Estimating estimating) {
   if (!ended_.empty()) return broken(std::string(ended_));
   Model model = model_.given;
   drive_by(model, {history}, history.end() + (history.goes_on ? 0.0 : model_.recorder.settle));
@@ -167,7 +167,7 @@ Passage Traveller::pass(const DriveHistory& history, Estimating estimating) {
     if (!report.run.result.stop_reason.empty()) ended_ = report.run.result.stop_reason;
     state_ = report.run.result.final_state;
     state_->t = state_->dissipated = state_->work = 0.0;
-    passage.still_moving = still_moving(*loaded->system, *state_, model_.body);
+    passage.final_speed = final_speed(*loaded->system, *state_, model_.body);
     return passage;
   } catch (const NumericalFailure& failure) {
     return broken(failure.what());

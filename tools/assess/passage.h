@@ -32,7 +32,7 @@ struct JointPassage {
 struct FootPassage {
   std::string name;
   double from = 0.0;            ///< time at which the contact opened, s
-  std::optional<double> height; ///< largest gap, m
+  std::optional<double> height; ///< largest gap during the event, m
 };
 
 /// A limit of an [[acceptance]] table, with its result for one event.
@@ -52,7 +52,7 @@ struct BodyPose {
 
 /// Results of one event in one model.
 struct Passage {
-  std::size_t event = 0, model = 0; ///< indices
+  std::size_t event = 0, model = 0; ///< indices of the event and of the model
   bool is_made = false;             ///< false if the run failed, or if the voyage of this model ended in an earlier event
   Verdict verdict = Verdict::open;
   std::string reason, trust;
@@ -65,14 +65,14 @@ struct Passage {
   std::vector<std::string> findings;
   std::optional<double> worst_instant; ///< time at which a utilisation is largest, s after the begin of the event
   std::vector<BodyPose> poses;         ///< poses of the bodies at the output sample nearest to that time; empty if there is none
-  double still_moving = 0.0;           ///< largest speed of a body relative to the tank at the end of the event, m/s
+  double final_speed = 0.0;            ///< largest speed of a body relative to the tank at the end of the event, m/s
   std::vector<SampledFriction> traces; ///< friction histories of the elements in DrivenModel::traced
 };
 
 /// A model during the voyage: keeps the state between its events.
-class Traveller {
+class VoyageModel {
 public:
-  explicit Traveller(const DrivenModel& model) : model_(model) {}
+  explicit VoyageModel(const DrivenModel& model) : model_(model) {}
 
   /// Simulates the next event. `estimating` decides whether errors are estimated by finer runs. Throws ModelError if the model cannot be
   /// run.

@@ -31,17 +31,17 @@ struct EventReading {
   ReadOptions read;
   EventRules rules;
   std::optional<double> frequency_class;     ///< class of the channel filter: frequency in Hz (CFC)
-  std::optional<double> rate;                ///< sampling rate of the conditioned signal, Hz; none: that of the record
+  std::optional<double> rate;                ///< sampling rate of the conditioned signal, Hz; empty: that of the record
   std::optional<std::string> gravity;        ///< axis from which gravity is subtracted, "z", "-z", …; "none": it is not subtracted
   std::optional<std::array<double, 2>> rest; ///< s; the mean over this interval is subtracted
-  std::optional<AssumedPulse> pulse;         ///< for lists of peaks; none: they drive no model
+  std::optional<AssumedPulse> pulse;         ///< pulse for lists of peaks; without it such a list drives no model
 };
 
 /// A shock with the samples of its window.
 struct RecordedEvent {
   ShockEvent event;
   Window window;
-  bool is_below = false; ///< true if it stays below the requested threshold
+  bool is_below = false; ///< true if the shock stays below the requested threshold
 };
 
 /// Contents of a recorder's file.
@@ -53,7 +53,7 @@ struct RecordEvents {
   double rate = 0.0, bandwidth = 0.0; ///< Hz, of the conditioned signal
   bool is_filtered = false;
   FallWatch fall;
-  std::vector<RecordedEvent> events; ///< in order of time
+  std::vector<RecordedEvent> events; ///< shocks found, in order of time
   std::array<double, 3> rest{};      ///< reading at rest of each axis, m/s²: mean over the interval of --rest, otherwise median of the
                                      ///< first second
   std::array<double, 3> greatest{};  ///< largest magnitude of each axis, filtered, m/s²

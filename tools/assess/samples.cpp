@@ -17,22 +17,22 @@ namespace steplap::assess {
 
 namespace {
 
-struct Runners {
+struct ThreadRunners {
   std::vector<std::unique_ptr<VoyageRunner>> of_models;
   const std::vector<std::vector<DriveHistory>>& histories; ///< indexed by model and event
   const std::vector<SharedFriction>& shared;
 };
 
-Runners runners_of(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
-                   const std::vector<SharedFriction>& shared, const UncertainValues& uncertain) {
-  Runners runners{{}, histories, shared};
+ThreadRunners runners_of(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
+                         const std::vector<SharedFriction>& shared, const UncertainValues& uncertain) {
+  ThreadRunners runners{{}, histories, shared};
   for (std::size_t m = 0; m < models.size(); ++m)
     runners.of_models.push_back(std::make_unique<VoyageRunner>(models[m], histories[m], uncertain.paths(m)));
   return runners;
 }
 
 // Evaluates the shared frictions for the events that were simulated in all models.
-void judge_planes(const Runners& runners, const std::vector<VoyageOutcome>& outcomes, VoyageSummary& summary) {
+void judge_planes(const ThreadRunners& runners, const std::vector<VoyageOutcome>& outcomes, VoyageSummary& summary) {
   std::size_t events = outcomes.front().events_made;
   for (const VoyageOutcome& outcome : outcomes) events = std::min(events, outcome.events_made);
   SharedFrictions frictions(runners.shared);
@@ -49,7 +49,7 @@ void judge_planes(const Runners& runners, const std::vector<VoyageOutcome>& outc
   }
 }
 
-void run(Runners& runners, const UncertainValues& uncertain, VoyageSample& sample, const std::function<bool()>& stop) {
+void run(ThreadRunners& runners, const UncertainValues& uncertain, VoyageSample& sample, const std::function<bool()>& stop) {
   std::vector<VoyageOutcome> outcomes;
   for (std::size_t m = 0; m < runners.of_models.size(); ++m) {
     VoyageOutcome outcome = runners.of_models[m]->run(uncertain.numbers(m, sample.values), stop);
@@ -174,7 +174,7 @@ private:
 
 VoyageSample voyage_with(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
                          const UncertainValues& uncertain, const std::vector<double>& values, const std::vector<SharedFriction>& shared) {
-  Runners runners = runners_of(models, histories, shared, uncertain);
+  ThreadRunners runners = runners_of(models, histories, shared, uncertain);
   VoyageSample sample;
   sample.values = values;
   run(runners, uncertain, sample, {});
@@ -189,7 +189,7 @@ std::vector<VoyageSample> sample_voyages(const std::vector<DrivenModel>& models,
   for (std::size_t n = 0; n < samples.size(); ++n) samples[n].values = uncertain.draw(options.seed, n + 1);
   SampleStore store(options, models, histories, uncertain);
   VoyageCourse course(options, store, samples);
-  std::vector<Runners> teams; // created by one thread, because reading and completing models is not thread-safe
+  std::vector<ThreadRunners> teams; // created by one thread, because reading and completing models is not thread-safe
   for (int i = 0; i < threads; ++i) teams.push_back(runners_of(models, histories, shared, uncertain));
     // Samples are distributed singly, so that threads do not wait for the longest voyage of a batch.
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)

@@ -28,7 +28,7 @@ struct SamplingOptions {
   int threads = 0;   ///< 0: OMP_NUM_THREADS if set, otherwise the number of processors
   std::string store; ///< name of the sample file; "": none
   std::function<void(long done, long all)> progress;
-  std::function<std::string()> stop; ///< polled; a text other than "" stops the work and becomes the reason
+  std::function<std::string()> stop; ///< called repeatedly; a non-empty text stops the work and becomes its reason
 };
 
 /// A probability with its 95 % confidence interval (Clopper and Pearson). Runs without a result count as harmless for the lower bound and

@@ -24,7 +24,7 @@ namespace steplap::assess {
 
 /// The part of a shared friction that one model computes.
 struct PlaneOfFriction : FrictionPlane {
-  std::size_t model = 0;            ///< index
+  std::size_t model = 0;            ///< index of the model
   std::vector<std::size_t> traces;  ///< indices into DrivenModel::traced; the friction force is the sum over them
   std::vector<std::string> holders; ///< other elements that hold the load
   struct Limit {
@@ -48,7 +48,7 @@ struct SharedFriction {
 
 /// Result of one event for a shared friction.
 struct SharedPassage : SharedUse {
-  std::size_t friction = 0; ///< index
+  std::size_t friction = 0; ///< index of the shared friction
   double slid = 0.0;        ///< length of the path during this event, m; infinite if the point does not come to rest
   double slid_total = 0.0;  ///< sum over all events so far, m
   std::string bound;        ///< reason why the path is an upper bound; "" if it is not

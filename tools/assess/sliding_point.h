@@ -47,7 +47,7 @@ public:
   [[nodiscard]] double path() const { return path_; } ///< length of the path, m
   [[nodiscard]] bool rests() const { return rests_; }
   [[nodiscard]] std::optional<double> first_slip() const { return first_slip_; } ///< time of the first onset of sliding, s
-  [[nodiscard]] std::optional<double> last_rest() const { return last_rest_; }   ///< time at which it last came to rest, s
+  [[nodiscard]] std::optional<double> last_rest() const { return last_rest_; }   ///< time at which the point last came to rest, s
 
 private:
   struct Piece;

@@ -56,7 +56,7 @@ StaticMachine::StaticMachine(const LoadedModel& loaded)
   std::fill(at_rest_.rest->state.v.begin(), at_rest_.rest->state.v.end(), 0.0);
   at_rest_.values = values_at_rest(*system_, at_rest_.rest->state);
   find_watches();
-  at_rest_.left = left_of(at_rest_);
+  at_rest_.left = reserves_of(at_rest_);
 }
 
 void StaticMachine::find_watches() {
@@ -90,7 +90,7 @@ void StaticMachine::find_watches() {
   }
 }
 
-std::vector<double> StaticMachine::left_of(const Probe& probe) const {
+std::vector<double> StaticMachine::reserves_of(const Probe& probe) const {
   std::vector<double> left(watches_.size(), 1.0);
   for (std::size_t w = 0; w < watches_.size(); ++w) {
     if (channel_[w] >= 0) {
@@ -126,7 +126,7 @@ Probe StaticMachine::probe(const State& start, const Vec2& pull) {
     }
     probe.values = values_at_rest(*system_, found.state);
     probe.rest = std::move(found);
-    probe.left = left_of(probe);
+    probe.left = reserves_of(probe);
   } catch (const RunStopped&) {
     throw;
   } catch (const NumericalFailure& failure) {
@@ -141,7 +141,7 @@ Probe StaticMachine::ramped(const Vec2& pull) { return probe(at_rest_.rest->stat
 
 Probe StaticMachine::ramped_from(const Probe& before, const Vec2& pull) { return probe(before.rest->state, pull); }
 
-Probe StaticMachine::worked_loose(const Vec2& pull) {
+Probe StaticMachine::without_friction(const Vec2& pull) {
   State loose = at_rest_.rest->state;
   for (std::size_t w = 0; w < watches_.size(); ++w)
     if (watches_[w].kind == LimitKind::slides) loose.friction[static_cast<std::size_t>(friction_[w])].phase = FrictionPhase::apart;

@@ -64,14 +64,14 @@ public:
   /// As ramped(), but starts from the equilibrium `before` under another pull.
   [[nodiscard]] Probe ramped_from(const Probe& before, const Vec2& pull);
   /// Returns the equilibrium without friction along lines and about pins, as after long vibration. Friction of joints in the plane holds.
-  [[nodiscard]] Probe worked_loose(const Vec2& pull);
+  [[nodiscard]] Probe without_friction(const Vec2& pull);
   /// Returns the value of a channel; NaN if there is none of that name.
   [[nodiscard]] double value(const Probe& probe, const std::string& channel) const;
 
 private:
   void find_watches();
   Probe probe(const State& start, const Vec2& pull);
-  [[nodiscard]] std::vector<double> left_of(const Probe& probe) const;
+  [[nodiscard]] std::vector<double> reserves_of(const Probe& probe) const;
 
   Model model_;
   std::unique_ptr<System> system_;

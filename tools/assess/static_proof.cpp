@@ -90,7 +90,7 @@ public:
     if (!grown_.rest) return std::move(case_);
     case_.verdict = Verdict::hold; // set before the checks, which can only worsen it
     ways_.push_back(&grown_);
-    ask_other_ways();
+    add_other_paths();
     collect();
     decide();
     return std::move(case_);
@@ -108,14 +108,14 @@ private:
   void follow(double a) {
     const StaticRay ray = grow_pull(machine_, case_.load.pull / a, a);
     if (!ray.limits.empty()) {
-      const std::string words = limit_words(ray, 0);
+      const std::string words = limit_text(ray, 0);
       case_.first = words + " at " + acceleration(ray.limits.front().acceleration);
     }
     if (grown_.rest) return;
     const StaticLimit* const end = ray.limits.empty() || ray.limits.back().kind != LimitKind::ends ? nullptr : &ray.limits.back();
     const bool is_explained = end && ray.is_explained;
     if (is_explained)
-      case_.why = limit_words(ray, ray.limits.size() - 1) + " at " + acceleration(end->acceleration) + ", " +
+      case_.why = limit_text(ray, ray.limits.size() - 1) + " at " + acceleration(end->acceleration) + ", " +
                   rounded_text(100.0 * end->acceleration / a, 3) + " % of this load";
     else if (end && end->acceleration < 1e-3 * a)
       case_.why = "no rest: the machine gives way to the least pull (" + end->text + "). Hold its vehicle by a drive";
@@ -123,7 +123,7 @@ private:
     case_.verdict = is_explained ? Verdict::reject : Verdict::open;
   }
 
-  void ask_other_ways() {
+  void add_other_paths() {
     const Vec2& pull = case_.load.pull;
     if (pull == Vec2::Zero()) return;
     turned_ = machine_.ramped(-pull);
@@ -136,7 +136,7 @@ private:
     } else {
       case_.remarks.push_back("the reversed load is not carried, so its effect on the rest was not computed");
     }
-    loose_ = machine_.worked_loose(pull);
+    loose_ = machine_.without_friction(pull);
     if (loose_.rest) ways_.push_back(&loose_);
     else case_.remarks.push_back("it needs friction between bodies to hold: without, " + loose_.failure);
   }
@@ -178,7 +178,7 @@ private:
       if (std::find(slid.begin(), slid.end(), margin.friction) == slid.end()) continue;
       const std::string& name = name_of(margin.friction);
       const bool is_at_bound = margin.used >= k_at_bound;
-      if (is_at_bound && !pushes_on(way, start, margin, name)) continue;
+      if (is_at_bound && !acts_along_slide(way, start, margin, name)) continue;
       const std::string passed =
           "'" + name + "' has slid and then " +
           (is_at_bound ? "pushes in the direction of its slide" : "carries " + rounded_text(100.0 * margin.used, 3) + " % of what it can") +
@@ -210,7 +210,7 @@ private:
 
   // Returns true if friction along a line acts in the direction in which it slid since `start`, which friction cannot do under a growing
   // load.
-  [[nodiscard]] bool pushes_on(const Probe& way, const State& start, const FrictionMargin& margin, const std::string& name) const {
+  [[nodiscard]] bool acts_along_slide(const Probe& way, const State& start, const FrictionMargin& margin, const std::string& name) const {
     const FrictionElement& friction = *unit_of(margin).friction;
     if (friction.dimension() != 1) return false;
     const State& rest = way.rest->state;
@@ -289,7 +289,7 @@ private:
 
 // Returns true if the machine also has an equilibrium, with all limits kept, when the load grows from the opposite pull −`pull` instead of
 // from zero.
-bool is_borne_otherwise(StaticMachine& machine, const Vec2& pull) {
+bool has_equilibrium_from_opposite(StaticMachine& machine, const Vec2& pull) {
   const auto is_intact = [](const Probe& probe) {
     return probe.rest && std::all_of(probe.left.begin(), probe.left.end(), [](double left) { return left > 0.0; });
   };
@@ -298,12 +298,12 @@ bool is_borne_otherwise(StaticMachine& machine, const Vec2& pull) {
   return is_intact(machine.ramped_from(turned, pull));
 }
 
-StaticDirection look_along(StaticMachine& machine, double angle, double largest) {
+StaticDirection limits_along(StaticMachine& machine, double angle, double largest) {
   const auto without_rounding = [](double x) { return std::abs(x) < 1e-15 ? 0.0 : x; };
   const Vec2 direction(without_rounding(portable::cos(angle)), without_rounding(portable::sin(angle)));
   StaticDirection found{angle, grow_pull(machine, direction, largest), true};
   if (!found.ray.limits.empty() && found.ray.limits.front().acceleration > 0.0)
-    found.is_unique = is_borne_otherwise(machine, (1.0 - k_just_below) * found.ray.limits.front().acceleration * direction);
+    found.is_unique = has_equilibrium_from_opposite(machine, (1.0 - k_just_below) * found.ray.limits.front().acceleration * direction);
   return found;
 }
 
@@ -334,7 +334,7 @@ void conclude(StaticProof& proof, const StaticMachine& machine) {
 
 } // namespace
 
-std::string limit_words(const StaticRay& ray, std::size_t limit) {
+std::string limit_text(const StaticRay& ray, std::size_t limit) {
   const StaticLimit& one = ray.limits[limit];
   if (one.kind != LimitKind::ends) return one.text;
   std::string lifting, sliding, slipping;
@@ -373,7 +373,7 @@ StaticProof prove_statically(const LoadedModel& loaded, const StaticPreset& pres
   }
   for (int i = 0; i < options.directions; ++i) {
     ask_whether_to_stop();
-    proof.polar.push_back(look_along(machine, 2.0 * std::numbers::pi * i / options.directions, options.largest));
+    proof.polar.push_back(limits_along(machine, 2.0 * std::numbers::pi * i / options.directions, options.largest));
   }
   const RunResult rest = as_run(machine, machine.at_rest());
   for (const Criterion& criterion : machine.model().criteria)

@@ -34,7 +34,7 @@ struct StaticFoot {
   std::string name;
   bool lifts = false;  ///< true if it opens along any of the loading paths
   double force = 0.0;  ///< contact force after the load has grown from zero, N
-  double height = 0.0; ///< largest gap, m
+  double height = 0.0; ///< largest gap over all loading paths, m
 };
 
 /// Result for a step-lap joint.
@@ -49,7 +49,7 @@ struct StaticCase {
   Vec2 apparent = Vec2::Zero();    ///< gravity plus pull, m/s²
   Verdict verdict = Verdict::open; ///< hold, open or reject; "inspect" is not used, because a limit that is exceeded is not proven
   std::string why;                 ///< sentence with the reason of a verdict other than "hold"
-  std::string first;               ///< first limit that the growing pull reaches, with its acceleration; "" if none
+  std::string first;               ///< first limit reached while the pull grows, with its acceleration; "" if none
   std::vector<StaticJoint> joints; ///< empty if there is no equilibrium
   std::vector<StaticFoot> feet;
   std::vector<std::string> slid; ///< names of friction elements that slid before the machine found a new equilibrium
@@ -80,7 +80,7 @@ struct StaticProof {
   std::vector<StaticDirection> polar;
   double largest = 0.0;             ///< largest pull examined in each direction, m/s²
   Verdict verdict = Verdict::open;  ///< worst of the cases
-  std::string reason;               ///< a sentence
+  std::string reason;               ///< sentence with the reason of the verdict
   std::vector<std::string> unasked; ///< names of the model's criteria that cannot be evaluated at rest
 };
 
@@ -89,7 +89,7 @@ struct StaticProofOptions {
   Plane plane = Plane::lengthwise;
   int directions = 72;
   double largest = 98.1;             ///< largest pull to be examined, m/s²
-  std::function<std::string()> stop; ///< polled between directions; a text other than "" stops the work and becomes the reason
+  std::function<std::string()> stop; ///< called between directions; a non-empty text stops the work and becomes its reason
 };
 
 /// Runs the proof. Throws NumericalFailure if the machine has no equilibrium without acceleration, or if stopped.
@@ -98,6 +98,6 @@ struct StaticProofOptions {
 /// Returns a text for limit number `limit` of the ray: the element that slips, slides or lifts. For the loss of equilibrium (`ends`) it
 /// names the limits that were reached at the same acceleration, for example "'foot' slides away" or "the machine tips over as 'foot'
 /// lifts".
-[[nodiscard]] std::string limit_words(const StaticRay& ray, std::size_t limit);
+[[nodiscard]] std::string limit_text(const StaticRay& ray, std::size_t limit);
 
 } // namespace steplap::assess

@@ -19,13 +19,13 @@ struct StaticLimit {
   LimitKind kind = LimitKind::ends;
   std::string element;       ///< name of the element; "" for the kind `ends`
   std::string text;          ///< "'front joint' slips"; for `ends` the message of the equilibrium search
-  double acceleration = 0.0; ///< m/s²
-  double error = 0.0;        ///< half the width of the interval that contains it, m/s²
+  double acceleration = 0.0; ///< pull at which the limit is reached, m/s²
+  double error = 0.0;        ///< half the width of the interval that contains `acceleration`, m/s²
 };
 
 /// All limits reached along one direction of pull.
 struct StaticRay {
-  std::vector<StaticLimit> limits; ///< ascending in acceleration
+  std::vector<StaticLimit> limits; ///< limits in ascending order of acceleration
   /// false if equilibrium is lost without a limit being reached before, or if the search failed without a reason
   bool is_explained = true;
   double largest = 0.0; ///< largest pull with an equilibrium, m/s²

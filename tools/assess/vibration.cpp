@@ -20,7 +20,7 @@ constexpr double k_same_margin = 0.02; // largest relative change of the margin 
 constexpr double k_same_share = 0.1;   // largest change of the probability between equal results, as a fraction of its confidence interval
 // events that differ by less in length, s, count as equal: the difference has signals below a quarter of the threshold
 constexpr double k_same_length = 0.2;
-constexpr double k_day = 86400.0;      // s
+constexpr double k_day = 86400.0;      // length of a day, s
 constexpr double k_most_samples = 4e6; // largest number of samples in all events together: 200 MB
 const std::string k_too_long = "it lasts too long to be held in memory";
 constexpr int k_needed = 2, k_most_halvings = 12;

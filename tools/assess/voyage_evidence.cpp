@@ -140,7 +140,7 @@ std::string axes_used(const std::vector<DrivenModel>& models) {
   return used;
 }
 
-void find_unseen(const AssessmentOptions& options, Assessment& a) {
+void find_gaps_before_runs(const AssessmentOptions& options, Assessment& a) {
   for (const RecordEvents& record : a.records)
     for (const MissingEvidence& missing : record.missing)
       a.missing.push_back({missing.item, "'" + record.file + "': " + missing.reason, missing.remedy});
@@ -148,7 +148,7 @@ void find_unseen(const AssessmentOptions& options, Assessment& a) {
   if (auto missing = uncovered(a.records, options.voyage)) a.missing.push_back(std::move(*missing));
 }
 
-void find_undecided(const AssessmentOptions& options, Assessment& a) {
+void check_bandwidth_and_position(const AssessmentOptions& options, Assessment& a) {
   if (decision_by_criteria(a, a.summary) != Decision::energise) return;
   find_place(a);
   find_bandwidth(options, a);

@@ -8,9 +8,9 @@ namespace steplap::assess {
 /// Returns the letters of the record's axes that drive one of the models.
 [[nodiscard]] std::string axes_used(const std::vector<DrivenModel>& models);
 /// Finds missing axes, coverage and clocks, which require no run of a model.
-void find_unseen(const AssessmentOptions& options, Assessment& assessment);
+void find_gaps_before_runs(const AssessmentOptions& options, Assessment& assessment);
 /// Checks whether position and bandwidth of the recorder could change the decision "energise". Repeats the voyage with other corner
 /// frequencies.
-void find_undecided(const AssessmentOptions& options, Assessment& assessment);
+void check_bandwidth_and_position(const AssessmentOptions& options, Assessment& assessment);
 
 } // namespace steplap::assess

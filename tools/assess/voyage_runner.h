@@ -17,7 +17,7 @@ namespace steplap::assess {
 /// Result of one sample for one model.
 struct VoyageOutcome {
   VoyageSummary summary;
-  std::vector<char> slips; ///< per event: true if a joint slipped
+  std::vector<char> slips; ///< for each event: true if a joint slipped
   std::size_t events_made = 0;
   /// friction histories of the elements in DrivenModel::traced, one list per simulated event
   std::vector<std::vector<SampledFriction>> traces;
