@@ -21,6 +21,6 @@ struct AssessOptions : ReadingOptions {
 /// Returns the command; `work` executes it.
 [[nodiscard]] Command assess_command(const std::function<ExitCode(const AssessOptions& options, Console& console)>& work);
 /// Returns true if these arguments request an assessment of recorder files, which the study program executes.
-[[nodiscard]] bool asks_for_assessment(const std::vector<std::string>& arguments);
+[[nodiscard]] bool is_record_assessment(const std::vector<std::string>& arguments);
 
 } // namespace steplap

@@ -293,8 +293,8 @@ ExitCode update_files(const CheckOptions& options, Console& console) {
     console.out << "\n";
     for (const std::string& file : loaded->model.files_without_format)
       if (file != loaded->path) console.out << "  note: " << file << ", which it uses, does not say `format = 1`: update it as well\n";
-    if (update.left_keys > 0)
-      console.out << "  note: " << counted(update.left_keys, "key", "keys")
+    if (update.missing_keys > 0)
+      console.out << "  note: " << counted(update.missing_keys, "key", "keys")
                   << " with an earlier name in other files: update these as well\n";
   }
   return ExitCode::done;

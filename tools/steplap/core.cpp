@@ -227,7 +227,7 @@ ExitCode core(const CoreOptions& options, Console& console) {
   const auto loaded = load_model(options.model, options.overrides);
   const std::vector<const Core*> cores = chosen_cores(options, *loaded);
   std::ostream silent(nullptr);
-  std::ostream& out = files.has_words() ? console.out : silent;
+  std::ostream& out = files.may_print() ? console.out : silent;
   const bool is_drawn_there = options.image && is_standard_output(*options.image);
   if (is_drawn_there && cores.size() > 1)
     throw UsageError("--svg -: there are " + std::to_string(cores.size()) + " cores with one drawing each: choose one with --core");

@@ -36,7 +36,7 @@ std::string shortened(const std::string& text) {
   return end < text.size() ? text.substr(0, end) + "…" : text;
 }
 
-// Shows six digits, or all if the other value has the same six.
+// Formats a value with six digits, or with all if six do not distinguish it from the other value.
 Cell value_cell(const std::optional<double>& value, const std::optional<double>& other, const std::string& text, const std::string& unit) {
   if (!value) return text.empty() ? Cell("-") : Cell(shortened(shown(text)));
   const std::string usual = quantity_text(*value, unit);

@@ -21,7 +21,7 @@ class JsonScreen : public std::ostringstream, public TableSink {
 public:
   void begin(const About& about) override;
   void take(const TextTable& table) override;
-  /// Adds a JSON document to the present result, in addition to its tables.
+  /// Adds a JSON document to the result of the present subject, in addition to its tables.
   void put(const std::string& name, OrderedJson document);
   /// Returns the whole output as JSON text.
   [[nodiscard]] std::string document(const std::string& program, const std::string& command, int exit_code);

@@ -24,7 +24,7 @@ struct NewOptions {
   std::map<std::string, std::optional<std::string>> values; ///< values given by the user, by option name
 };
 
-// Returns the text between the next pair of quotes from `at`, and moves `at` behind them.
+// Returns the text between the next pair of quotes after `at`, and moves `at` behind the closing quote.
 std::string_view quoted(std::string_view line, std::size_t& at) {
   const std::size_t begin = line.find('"', at), end = begin == std::string_view::npos ? begin : line.find('"', begin + 1);
   if (end == std::string_view::npos) return {};
@@ -65,7 +65,7 @@ const ModelTemplate& template_called(const std::string& kind) {
 std::string filled(const ModelTemplate& one, const NewOptions& options, const std::string& only = "") {
   std::string text(one.text);
   std::vector<TemplateParameter> parameters = one.parameters();
-  std::reverse(parameters.begin(), parameters.end()); // from the end, so that positions before stay valid
+  std::reverse(parameters.begin(), parameters.end()); // replaced from the end, so that earlier positions remain valid
   for (const TemplateParameter& p : parameters) {
     const auto given = options.values.find(p.option());
     if (given != options.values.end() && given->second && (only.empty() || only == p.option()))
@@ -105,7 +105,7 @@ ExitCode write_model(const NewOptions& options, Console& console) {
   const std::string output = options.output.value_or("-");
   const OutputFiles files(console, {{"-o", output}}, options.is_overwriting);
   files.write(output, text);
-  if (files.has_words()) console.out << "Written to " << output << ". Look at it, then: steplap simulate " << output << " --report\n";
+  if (files.may_print()) console.out << "Written to " << output << ". Look at it, then: steplap simulate " << output << " --report\n";
   return ExitCode::done;
 }
 
@@ -141,7 +141,7 @@ parameters.NAME for one run. Values are SI or carry a unit.
   command.options = {{"KIND", &o->kind, "KIND", "block, machine or transformer", true},
                      {"-o,--output", &o->output, "FILE", "the file to write (default: the standard output)"},
                      {"-f,--force", &o->is_overwriting, "", "overwrite an earlier file"}};
-  std::map<std::string, std::string> docs; // by option; several templates may have an option of the same name
+  std::map<std::string, std::string> docs; // help texts by option; several templates may have the same option
   std::vector<std::string> order;
   for (const ModelTemplate& one : model_templates())
     for (const TemplateParameter& p : one.parameters()) {

@@ -232,7 +232,7 @@ std::vector<std::array<double, 3>> means_of(const std::string& file, const Recor
 }
 
 // Returns an error if the mean reading at rest exceeds half the threshold on any axis: gravity would then trigger the event search.
-std::optional<std::string> events_hang_on_gravity(const RecordOptions& options, const RecordResult& result) {
+std::optional<std::string> gravity_problem(const RecordOptions& options, const RecordResult& result) {
   constexpr double k_felt = 0.5;
   if (options.gravity || options.quiet || result.recording.layout.is_peaks) return {};
   for (std::size_t i = 0; i < result.recording.layout.axes.size(); ++i) {
@@ -247,7 +247,7 @@ std::optional<std::string> events_hang_on_gravity(const RecordOptions& options, 
 
 struct Outputs {
   std::string folder;    ///< output folder; "": none
-  std::size_t event = 0; ///< 0: all
+  std::size_t event = 0; ///< number of the event whose samples are written; 0: all events
   DriftCorrection drift = DriftCorrection::none;
 };
 
@@ -281,7 +281,7 @@ void process(const std::string& file, const RecordOptions& options, const Output
   SignalWriter writer(outputs.folder, false);
   const bool writes_signal = !outputs.folder.empty() && outputs.event == 0;
   Tee tee(finder, writes_signal ? &writer : nullptr);
-  struct Keep : GravityFirst {
+  struct LayoutRecorder : GravityFirst {
     using GravityFirst::GravityFirst;
     const RecordLayout** at = nullptr;
     void begin(const RecordLayout& seen) override {
@@ -299,7 +299,7 @@ void process(const std::string& file, const RecordOptions& options, const Output
     result.interpolated = first.conditioner().interpolated();
     result.drift = first.conditioner().drift();
   }
-  const std::optional<std::string> no_events = events_hang_on_gravity(options, result);
+  const std::optional<std::string> no_events = gravity_problem(options, result);
   if (no_events && (options.is_json || !outputs.folder.empty())) throw UsageError("'" + file + "': " + *no_events);
   if (outputs.event > 0 && !window)
     throw UsageError("--event " + std::to_string(outputs.event) + ": the record has " + counted(result.events.size(), "event", "events") +
@@ -347,7 +347,7 @@ ExitCode make(const RecordOptions& options, Console& console) {
   if (options.files.size() != 1) throw UsageError("--make: name one file to write");
   const OutputFiles files(console, {{"FILE", options.files.front()}}, options.is_overwriting);
   files.write(options.files.front(), make_record(*options.make));
-  if (files.has_words()) console.out << "Written to " << options.files.front() << "\n";
+  if (files.may_print()) console.out << "Written to " << options.files.front() << "\n";
   return ExitCode::done;
 }
 
@@ -371,8 +371,7 @@ ExitCode record(const RecordOptions& options, Console& console) {
     if (options.output) outputs.folder = folders[i]->staging();
     process(options.files[i], options, outputs, console);
   }
-  for (const auto& folder : folders)
-    commit(*folder, is_silent, console); // only if every file has been read without error
+  for (const auto& folder : folders) commit(*folder, is_silent, console); // only if every file has been read without error
   return ExitCode::done;
 }
 

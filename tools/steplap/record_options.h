@@ -1,4 +1,4 @@
-// Options for reading a recorder's file and for finding its shocks, shared by all commands that read one.
+// Options for reading recorder files and for finding shocks in them, common to all commands that do this.
 #pragma once
 
 #include "tools/steplap/command.h"

@@ -44,7 +44,7 @@ struct SimulateOptions {
   std::optional<std::string> end, step, integrator, tolerance, output_step, digits, time_limit, memory_limit;
   bool is_overwriting = false, is_error_estimated = false, is_estimate_left_out = false, is_reported = false, is_hold_required = false;
 
-  /// --set and its short forms.
+  /// Returns the values of --set and of its short forms.
   [[nodiscard]] std::vector<std::string> all_overrides() const {
     std::vector<std::string> all = overrides;
     if (end) all.push_back("simulation.end=" + *end);
@@ -105,7 +105,7 @@ Budget SimulateOptions::budget() const {
   return budget;
 }
 
-/// A run with the folder of its files.
+/// A finished run and the folder of its files.
 struct FinishedRun {
   Report report;
   std::string folder;
@@ -247,7 +247,7 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
     for (const FinishedRun& run : runs) folders.push_back(run.folder);
     write_report(folders, page_of(options, models), options.is_overwriting);
   }
-  if (!files.has_words()) return code;
+  if (!files.may_print()) return code;
   show_runs(options, runs, console);
   if (options.is_reported) console.out << "Report: " << page_of(options, models) << "\n";
   return code;

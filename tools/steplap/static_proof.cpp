@@ -116,7 +116,7 @@ void print_weakest(std::ostream& out, const StaticProof& proof) {
     if (!weakest) continue;
     const StaticLimit& limit = weakest->ray.limits[which];
     if (!std::exchange(is_any, true)) table.add_row({"weakest direction", "towards", "pull", "error"});
-    table.add_row({limit_words(weakest->ray, which), rounded_text(weakest->angle * 57.29577951308232, 4) + "°",
+    table.add_row({limit_text(weakest->ray, which), rounded_text(weakest->angle * 57.29577951308232, 4) + "°",
                    acceleration_text(limit.acceleration), small_text(limit.error) + " m/s²"});
   }
   if (is_any) out << "\n" << table;

@@ -214,7 +214,7 @@ void print_assessment(std::ostream& out, const Assessment& a, const std::string&
     out << "\nProbability of damage in the voyage: " << percent(a.damage.value) << " (95 %: " << percent(a.damage.low) << " to "
         << percent(a.damage.high) << ", " << a.damage.runs << " samples).\n";
   for (std::size_t i = 0; i < a.hangs_on.size() && i < k_shown_sentences; ++i) out << a.hangs_on[i] << "\n";
-  if (a.decision != Decision::energise) out << coverage_text(a.records) << "\n"; // otherwise the first line contains it
+  if (a.decision != Decision::energise) out << coverage_text(a.records) << "\n"; // for "energise" the first line contains it
   for (const MissingEvidence& missing : a.missing)
     if (a.is_accepted(missing.item)) out << "Accepted (" << name_of(missing.item) << "): " << missing.reason << "\n";
   for (std::size_t i = 0; i < a.tests.size() && i < k_shown_sentences; ++i) out << (i == 0 ? "Tests: " : "  ") << a.tests[i] << "\n";
