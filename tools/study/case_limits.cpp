@@ -16,7 +16,7 @@ namespace {
 
 using SharedStudyModel = std::shared_ptr<const StudyModel>;
 
-// Returns a name that expressions may use: "1 g forward" becomes "limits_1_g_forward".
+// Returns a valid name for expressions: "limits_1_g_forward" for "1 g forward".
 std::string identifier_of(const std::string& name, const Study& study) {
   std::string text = name;
   for (char& c : text)

@@ -6,7 +6,7 @@
 
 namespace steplap::study {
 
-/// Settings of a "design" study. Those of reliability studies control the search for design points and the sampling.
+/// Settings of a "design" study. The inherited settings control the search for design points and the sampling.
 struct DesignSettings : ReliabilitySettings {
   /// target: reliability index or probability of failure; if neither is given, all limits must hold without uncertainty
   std::optional<double> beta, p;

@@ -21,7 +21,7 @@ constexpr double k_most_options = 100000; // largest number of combinations that
 struct Option {
   std::vector<double> values; ///< values of all variables of the study
   double cost = 0.0;
-  double margin = 0.0;  ///< least limit state
+  double margin = 0.0;  ///< least limit state; negative: the limits do not hold
   std::size_t limit{};  ///< index of the least limit state
   bool is_open = false; ///< true if it is unknown whether the limits hold
   std::string reason{}; ///< why the limits do not hold, or why this is unknown; "" if they hold

@@ -38,7 +38,7 @@ double g_at(LimitFunction& limit, const OT::Point& u) {
   return value.g;
 }
 
-// Evaluates g and its differences, each in one batch, which uses all processors.
+// The limit function g for OpenTURNS. All points of an evaluation are run in one batch, so that all processors are used.
 class LimitEvaluation : public OT::EvaluationImplementation {
 public:
   explicit LimitEvaluation(LimitFunction& limit) : limit_(&limit) {
@@ -214,7 +214,8 @@ void sort_points(std::vector<DesignPoint>& points) {
   });
 }
 
-// Returns the budget for all searches together: a search takes about five steps with a gradient each, and most end at known points.
+// Returns the largest number of samples for all searches together. A search takes about five steps with one gradient each, and most
+// searches end at known points.
 long budget_of(const LimitFunction& limit) {
   return limit.settings().search_samples.value_or(300 + 50 * static_cast<long>(limit.dimension()));
 }

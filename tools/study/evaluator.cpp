@@ -155,7 +155,7 @@ void Evaluator::check(const StoredSample& sample) const {
 
 // Batches take about half a second, which limits the loss at an interruption. Stored data do not depend on the batch size.
 const std::vector<StoredSample>& Evaluator::evaluate(const std::vector<double>& points) {
-  constexpr double k_batch = 0.5; // s
+  constexpr double k_batch = 0.5; // target duration of a batch, s
   const std::size_t width = loaded_.study.variables.size(), count = width ? points.size() / width : 0;
   rows_.resize(count);
   for (std::size_t from = 0; from < count;) {

@@ -24,7 +24,7 @@ struct Pace {
   long samples = 0, stored = 0; ///< samples requested so far, and how many of them the store contained
   double seconds = 0.0;
   double rate = 0.0;     ///< samples per second, recently
-  std::string estimate;  ///< latest estimate
+  std::string estimate;  ///< latest estimate as a text
   long expected = 0;     ///< number of samples at the end of the current method; 0: unknown
   bool is_guess = false; ///< true if `expected` is an extrapolation from the scatter of the estimate
 };

@@ -36,8 +36,8 @@ struct HoldingInterval {
 /// Returns `value` with unit and `digits` digits, rounded up or down: "31.9772 kPa".
 [[nodiscard]] std::string rounded_quantity(double value, const std::string& unit, bool is_up, int digits);
 
-/// Returns the intervals in words: "from 31.9772 kPa to 100 kPa (the end of the range) and from …". Ends are rounded inwards, so that the
-/// values printed hold. With `confidence`, 0 to 1, the intervals of ends are added in brackets.
+/// Returns a text: "from 31.9772 kPa to 100 kPa (the end of the range) and from …". Ends are rounded inwards, so that the printed values
+/// hold. If `confidence` is given, 0 to 1, the confidence intervals of the ends are added in brackets.
 [[nodiscard]] std::string intervals_text(const std::vector<HoldingInterval>& intervals, const std::string& unit, int digits,
                                          std::optional<double> confidence);
 

@@ -118,8 +118,8 @@ private:
     return true;
   }
 
-  // Returns true if the probability of survival is better known than that of failure. Both must have occurred often enough to estimate
-  // their scatter.
+  // Returns true if the probability of survival has the smaller standard deviation. Both outcomes must have occurred often enough for an
+  // estimate of their scatter.
   [[nodiscard]] bool holds_better() const {
     constexpr long k_enough = 20;
     return std::min(sums_.holds.hits(), sums_.fails.hits()) >= k_enough && sums_.holds.deviation() < sums_.fails.deviation();

@@ -342,7 +342,7 @@ private:
   double mean_b_ = 0.0, deviation_b_ = 1.0;
 };
 
-// Returns NaN if no correlation of the normal variables gives `rho`.
+// Returns the correlation of the normal variables that gives the correlation `rho` of the variables; NaN if there is none.
 double normal_correlation(const NatafIntegral& nataf, double rho) {
   double low = -0.99999, high = 0.99999;
   double below = nataf(low) - rho, above = nataf(high) - rho;

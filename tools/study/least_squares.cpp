@@ -45,7 +45,7 @@ struct Linear {
   VectorXd rhs;
 
   Linear(const MatrixXd& jacobian, const VectorXd& residuals) { std::tie(r, rhs) = triangle_of(jacobian, residuals); }
-  // Marquardt's damping, scaled by the effect of each parameter. Parameters that are `held` stay constant.
+  // Returns the step for Marquardt's damping, scaled by the effect of each parameter. Parameters that are `held` do not change.
   [[nodiscard]] VectorXd step(double damping, const std::vector<bool>& held) const {
     const Eigen::Index n = r.cols();
     const double least = 1e-8 * std::max(r.colwise().norm().maxCoeff(), 1e-300);
@@ -66,7 +66,7 @@ struct Linear {
   [[nodiscard]] double gain(const VectorXd& step) const { return rhs.squaredNorm() - (rhs + r * step).squaredNorm(); }
 };
 
-// Returns true if the parameter is at a bound and the step would cross it.
+// Returns, for each parameter, true if it is at a bound that the step would cross.
 std::vector<bool> held_by(const VectorXd& at, const VectorXd& gradient) {
   std::vector<bool> held;
   for (Eigen::Index i = 0; i < at.size(); ++i) held.push_back((at[i] <= 0.0 && gradient[i] > 0.0) || (at[i] >= 1.0 && gradient[i] < 0.0));

@@ -29,8 +29,8 @@ struct LeastSquaresMinimum {
   Eigen::VectorXd residuals;
   Eigen::MatrixXd jacobian;    ///< derivatives with respect to the scaled parameters; columns without a value are NaN
   double jacobian_error = 0.0; ///< Frobenius norm of the Richardson error estimate from steps h and 2h
-  double sum = 0.0;            ///< sum of squares
-  std::vector<bool> is_at_end; ///< per parameter: true at a bound
+  double sum = 0.0;            ///< sum of the squared residuals
+  std::vector<bool> is_at_end; ///< for each parameter: true if it is at a bound of its range
   std::string problem;         ///< empty if a minimum was found
 };
 
@@ -40,7 +40,7 @@ struct LeastSquaresMinimum {
 
 /// Parameters and directions that a minimum determines.
 struct Identified {
-  Eigen::MatrixXd covariance; ///< of the scaled parameters, within the determined directions
+  Eigen::MatrixXd covariance; ///< covariance of the scaled parameters, within the determined directions
   Eigen::MatrixXd directions; ///< orthonormal columns, in descending order of singular values
   Eigen::VectorXd singular;   ///< singular values of the Jacobian
   int rank = 0;               ///< number of determined directions

@@ -8,9 +8,9 @@ namespace steplap::study {
 
 /// Value of the limit function for one sample.
 struct LimitValue {
-  double g = 0.0;          ///< negative: failure
+  double g = 0.0;          ///< value of the limit function; negative: failure
   bool is_missing = false; ///< true if the run failed or is not trusted; g is then undefined
-  bool is_bad = false;     ///< true if it is unknown whether the sample fails: g is missing, or zero to the rounding of the run
+  bool is_bad = false;     ///< true if it is unknown whether the sample fails: g is missing, or zero to rounding
 };
 
 struct ReliabilitySettings;

@@ -1,7 +1,7 @@
 // Traces the zero curve of an expression in the plane of two variables.
 //
-// A grid is evaluated first. From every crossing of its lines with the curve, the curve is followed in both directions: a step along the
-// tangent, then a search for the curve across it.
+// First the expression is evaluated on a grid. From every crossing of a grid line the curve is followed in both directions: a step along
+// the tangent, then a search across it.
 #include "tools/study/map.h"
 
 #include "tools/study/crossing.h"

@@ -6,7 +6,7 @@
 
 namespace steplap::study {
 
-/// The processes of a study, seen from one of them.
+/// All processes of a study, and the rank of this one.
 class Ranks {
 public:
   /// Represents this process only.

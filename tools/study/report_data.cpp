@@ -44,10 +44,10 @@ template <class T> std::string base64(const std::vector<T>& values) {
 // All samples of a study, stored by column.
 struct Samples {
   std::vector<ReportColumn> columns;
-  std::vector<std::string> is;             ///< per column: description
-  std::vector<std::vector<double>> values; ///< per column
+  std::vector<std::string> is;             ///< description of each column
+  std::vector<std::vector<double>> values; ///< values of each column
   std::vector<std::uint8_t> status;
-  std::vector<std::uint32_t> reason; ///< index in `reasons`
+  std::vector<std::uint32_t> reason; ///< reason of each sample, as an index in `reasons`
   std::vector<std::string> reasons{""};
   [[nodiscard]] std::size_t size() const { return status.size(); }
 };
@@ -201,7 +201,7 @@ Json distributions_json(const Samples& samples, Drawn drawn) {
     const std::vector<double>& values = samples.values[c];
     if (samples.columns[c].role == "cost") continue;
     if (samples.columns[c].role == "variable" && std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end())
-      continue; // constant variable
+      continue; // constant variables are not shown
     if (json["of"].size() < k_most_columns)
       json["of"].push_back(tally_json(samples.columns[c].name, tally_of(values, drawn == Drawn::independently)));
     else ++left_out;

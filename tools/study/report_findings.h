@@ -19,7 +19,7 @@ struct FindingView {
   std::string variable;        ///< variable to which the quantity refers; "" if none
   long place = 0;              ///< number of a border or design point, from 1
   std::string value, interval; ///< formatted with the unit's prefix; "" if not available
-  std::string unit;            ///< with its prefix; "SI" for an unknown quantity
+  std::string unit;            ///< unit with its prefix; "SI" for an unknown quantity
 };
 
 /// Determines the presentation of a finding from its quantity.

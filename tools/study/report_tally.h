@@ -26,9 +26,9 @@ struct Histogram {
 struct Tally {
   long total = 0, missing = 0; ///< total number of runs; number of runs without a value
   long above = 0, below = 0;   ///< number of values that are +∞ and −∞
-  double mean = 0.0;           ///< of the finite values
-  Curve cumulative;            ///< for finite x; p includes infinite values
-  Histogram histogram;         ///< of the finite values
+  double mean = 0.0;           ///< mean of the finite values
+  Curve cumulative;            ///< distribution of the finite values; its fractions include the infinite ones
+  Histogram histogram;         ///< histogram of the finite values
 };
 
 /// Computes the statistics. The band is that of Dvoretzky, Kiefer and Wolfowitz with Massart's constant: it contains the whole distribution

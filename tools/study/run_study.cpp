@@ -10,7 +10,7 @@ namespace steplap::study {
 
 namespace {
 
-// Adds notes on fitted distributions. If the measurements contradict one, results that depend on it cannot be trusted.
+// Notes the fitted distributions. If measurements contradict one, the answer is marked as not trusted.
 void add_fits(const JointLaw& law, Answer& answer) {
   for (const JointLaw::Fit& fit : law.fits()) {
     answer.notes.push_back("Variable '" + fit.variable + "': " + fit.text + ".");

@@ -1,4 +1,4 @@
-// Evaluates one sample: sets the variables in the models, runs them and computes the numbers of interest.
+// Evaluates one sample: sets the variables in the models, runs the models and computes responses and limit states.
 #pragma once
 
 #include "mbd/simulation/simulation.h"
@@ -32,7 +32,7 @@ struct Outcome {
   SampleStatus status = SampleStatus::ok;
   std::string reason;
   std::vector<double> numbers; ///< responses, then limit states; NaN if unknown
-  std::vector<double> curve;   ///< values at the measured times of all histories, one after the other
+  std::vector<double> curve;   ///< channel values at the measured times of all histories, one history after another
   double error = 0.0;          ///< largest energy residual over the models, relative to the exchanged energy
   double evaluations = 0.0;    ///< number of evaluations of the equations of motion
   double cpu_seconds = 0.0;
@@ -66,7 +66,7 @@ private:
   int derive(const double* values, std::vector<double>& numbers);
 
   const LoadedStudy& loaded_;
-  std::vector<std::unique_ptr<SharedRunData>> runners_;         ///< one per model
+  std::vector<std::unique_ptr<SharedRunData>> runners_;         ///< shared data of each model
   std::vector<std::pair<std::size_t, Expression>> expressions_; ///< formulas, each with the index of the number that it computes
   std::vector<std::size_t> measured_;                           ///< indices of responses that have rounding errors
   std::vector<double> values_;                                  ///< buffer: values of variables, then of numbers

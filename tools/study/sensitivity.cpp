@@ -29,7 +29,7 @@ FieldTable sensitivity_fields() {
   return t;
 }
 
-// Returns the numbers of a sample; NaN if its run has no result.
+// Returns responses and limit states of a sample; NaN if the run has no result.
 std::vector<double> numbers_of(const StoredSample& sample, std::size_t count) {
   return sample.outcome.status == SampleStatus::ok ? sample.outcome.numbers : std::vector<double>(count, std::nan(""));
 }
@@ -157,7 +157,7 @@ struct Trajectories {
   double jump = 0.0; // change of a variable per move, as a fraction of its range
   // values of all variables at all points, trajectory by trajectory; each has one point more than moves
   std::vector<double> points;
-  std::vector<std::vector<Move>> moves; // per trajectory
+  std::vector<std::vector<Move>> moves; // moves of each trajectory
 };
 
 Trajectories drawn_trajectories(const StudyRun& run, const SensitivitySettings& s) {

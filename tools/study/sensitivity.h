@@ -10,7 +10,7 @@ struct SensitivitySettings : KindSettings {
   std::string method = "elasticity"; ///< elasticity, morris, sobol, tornado
   double difference = 1e-3;          ///< relative step for elasticities
   long samples = 1000;               ///< base sample size for Sobol indices
-  long trajectories = 20;            ///< for Morris
+  long trajectories = 20;            ///< number of trajectories of Morris' method
   long levels = 8;
   double confidence = 0.95;
 };

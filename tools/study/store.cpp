@@ -297,7 +297,7 @@ void Store::describe(const std::string& about) {
 
 void Store::hold() {
   execute("BEGIN");
-  read_identity(); // takes the lock and reads the current size
+  read_identity(); // locks the store and reads the number of samples
 }
 
 void Store::check_kind() {

@@ -34,12 +34,12 @@ private:
 
 /// Identity of a study in a store.
 struct StoreIdentity {
-  std::string version; ///< program version
+  std::string version; ///< version of the program that wrote the store
   std::string study;   ///< text of the study file and of the files it extends
   std::string kind;
   /// text of everything that affects the numbers of a sample: models, variables, responses, limit states
   std::string scene;
-  std::vector<std::string> variables, numbers; ///< column names
+  std::vector<std::string> variables, numbers; ///< column names of the samples
   bool has_curves = false;                     ///< true if samples contain the channel values at measured times
   std::vector<InputFile> files{};              ///< all files from which study and models were read
 };
@@ -91,7 +91,7 @@ public:
   /// Returns the intermediate estimates.
   [[nodiscard]] std::vector<Finding> growth();
   [[nodiscard]] std::vector<std::string> notes();
-  [[nodiscard]] std::string setting(const std::string& key); ///< "" if it does not exist
+  [[nodiscard]] std::string setting(const std::string& key); ///< returns "" if the key does not exist
   /// Stores the description made by report_about.h. It is not part of the identity.
   void describe(const std::string& about);
   /// Starts a read transaction: all later reads see the present contents, even if another process writes.

@@ -36,7 +36,7 @@ private:
   void write(const Job& job);
 
   Store& store_;
-  std::mutex mutex_; ///< protects everything below
+  std::mutex mutex_; ///< protects the members below
   std::condition_variable changed_;
   std::deque<std::pair<Job, std::size_t>> jobs_; ///< jobs with their numbers of samples; the first one is being executed
   std::size_t waiting_ = 0;                      ///< total number of samples in the queue

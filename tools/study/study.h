@@ -19,10 +19,10 @@ namespace steplap::study {
 struct Variable {
   std::string name;
   std::vector<std::string> paths; ///< paths in the models; empty: used in expressions only
-  bool is_factor = false;         ///< true if it multiplies the model's value at its paths
-  std::string model;              ///< name of the only model that it affects; "": all
+  bool is_factor = false;         ///< true if the variable multiplies the model's value at its paths
+  std::string model;              ///< name of the only model in which the variable is set; "": all models
   std::vector<double> values;
-  std::vector<double> range; ///< [low, high]
+  std::vector<double> range; ///< [low, high] of the variable
   std::string distribution;
   std::optional<double> mean, standard_deviation, cov;
   std::optional<double> low, high, mode; ///< bounds and mode of a uniform, triangular or beta distribution
@@ -54,10 +54,10 @@ enum class Measure : std::uint8_t {
   initial_value,     ///< value of a channel at the start
   mean,              ///< mean of a channel over the written samples
   path,              ///< sum of a channel's absolute changes over the written samples
-  event_count,       ///< number of events
+  event_count,       ///< number of events that match
   first_event,       ///< time of the first event, s
   verdict,           ///< 0 hold, 1 open, 2 inspect, 3 reject
-  reserve            ///< remaining reserve of all limits (mbd/run/utilisation.h); negative unless the verdict is "hold"
+  reserve            ///< smallest reserve of all limits (mbd/run/utilisation.h); negative unless the verdict is "hold"
 };
 
 /// Returns true for extremes of channels.
@@ -72,14 +72,14 @@ enum class Measure : std::uint8_t {
 /// [[response]]: a number computed for each run.
 struct Response {
   std::string name;
-  std::string model;                     ///< name of the model from which it is taken; required if there are several
+  std::string model;                     ///< name of the model that is run; required if there are several
   std::string channel;                   ///< pattern with * and ?
   std::string what;                      ///< highest, lowest, largest, final, initial, mean, path, time_of_highest, ...
-  Measure measure = Measure::expression; ///< the enumerator for `what`
-  bool takes_time = false;               ///< for an extreme: true to take its time, s, instead of its value
+  Measure measure = Measure::expression; ///< value of `what`
+  bool takes_time = false;               ///< true if a response takes the time of an extreme, s, instead of its value
   std::string event, element;            ///< patterns of events that are counted or timed
   std::optional<double> otherwise;       ///< value of the time if the event never happens; infinity if not given
-  std::string expression;                ///< of variables and of earlier responses
+  std::string expression;                ///< formula of variables and earlier responses
   std::string unit;
   Location where;
 };
@@ -89,10 +89,10 @@ struct History {
   std::string name;
   std::string model;                    ///< required if there are several models
   std::string channel;                  ///< name of the channel
-  std::string file;                     ///< CSV
+  std::string file;                     ///< path of the CSV file
   std::string time = "1", column = "2"; ///< columns, by name or number
   std::string unit, time_unit;          ///< units of the columns; "": the channel's unit, seconds
-  std::string noise_text;               ///< as given
+  std::string noise_text;               ///< noise as given in the file
   std::optional<double> from, to;       ///< s; rows outside are ignored
   std::optional<double> noise;          ///< standard deviation of the measurement, in the channel's unit
   std::string channel_unit;
@@ -100,12 +100,12 @@ struct History {
   Location where;
 };
 
-/// [[limit_state]]: failure means that its expression is negative.
+/// [[limit_state]]: a sample fails if the expression is negative.
 struct LimitState {
   std::string name;
   std::string expression;
   Location where;
-  bool is_border = false; ///< true if a study kind searches its zeros, which are no failures
+  bool is_border = false; ///< true if the study kind searches zeros of the expression, which are not failures
 };
 
 /// [[evidence]]: past loads in which the system held, or failed. Variables not listed in `anew` or `settings` had the same values as now.
@@ -114,7 +114,7 @@ struct Evidence {
   long times = 1;                             ///< number of past loads of this kind
   std::vector<std::string> anew;              ///< names of variables with independent values in each load
   std::vector<std::string> settings;          ///< measured values as given: "variable=value"
-  std::vector<std::pair<int, double>> values; ///< as `settings`: index of the variable, value
+  std::vector<std::pair<int, double>> values; ///< variables with measured values: index, value
   std::vector<std::string> limit_states;      ///< limit states of the past loads; empty: all of the study's system
   Location where;
 };

@@ -23,13 +23,13 @@ using ShownSettings = std::map<std::string, std::vector<std::string>>;
 
 /// Description and functions of one kind.
 struct StudyKind {
-  std::string name; ///< also the name of its table
+  std::string name; ///< name of the kind, and of its table in the study file
   std::string doc;
   FieldTable fields; ///< fields of its table
   std::shared_ptr<KindSettings> (*create)() = nullptr;
-  std::vector<std::string> shown{};  ///< fields of its table that the page shows
-  bool takes_histories = false;      ///< true if it uses measured records
-  bool takes_evidence = false;       ///< true if it uses loads of the past
+  std::vector<std::string> shown{};  ///< names of the settings that the page shows
+  bool takes_histories = false;      ///< true if the kind uses measured records
+  bool takes_evidence = false;       ///< true if the kind uses past loads
   bool draws_jointly = false;        ///< true if variables are drawn from their joint distribution with correlations, not set one by one
   bool seeks_a_mean = false;         ///< true if the searched variable may be the mean of a distribution
   bool begins_with_sentence = false; ///< true if the first note of the answer is a complete sentence with the result
@@ -56,7 +56,7 @@ struct StudyKind {
   return found != settings.end() && found->second == std::vector<std::string>{text};
 }
 
-/// Returns the address that the field table expects: that of the most derived settings object.
+/// Returns the address of the most derived settings object, which the field table expects.
 [[nodiscard]] inline void* fields_of(KindSettings& settings) { return dynamic_cast<void*>(&settings); }
 [[nodiscard]] inline const void* fields_of(const KindSettings& settings) { return dynamic_cast<const void*>(&settings); }
 

@@ -19,7 +19,7 @@ struct StudyModel {
   std::vector<std::string> overrides; ///< "path=value" with which the model was read
   Model given;
   std::string text;             ///< self-contained TOML text of the model with overrides and extensions
-  std::vector<InputFile> files; ///< files from which it was read: the model, extended files, records
+  std::vector<InputFile> files; ///< files that were read for the model: the model, extended files, records
   std::unique_ptr<System> system;
   std::vector<double> base; ///< value of each variable's first path in this model; NaN if this model has none
 };

@@ -27,7 +27,7 @@ struct Repetition {
   std::string problem;
 };
 
-// Threshold of the next level, and the number of samples below it.
+// Threshold of the next level, and number of samples below it.
 struct Threshold {
   double g = 0.0;
   std::size_t below = 0;

@@ -17,8 +17,10 @@ namespace steplap::study {
 
 /// Reliability index at one value of the design variable, with its confidence interval.
 struct IndexEstimate {
-  double beta = std::numeric_limits<double>::quiet_NaN();                                                 ///< NaN: unknown
-  double low = std::numeric_limits<double>::quiet_NaN(), high = std::numeric_limits<double>::quiet_NaN(); ///< confidence interval
+  /// reliability index; NaN: unknown
+  double beta = std::numeric_limits<double>::quiet_NaN();
+  /// confidence interval of the index
+  double low = std::numeric_limits<double>::quiet_NaN(), high = std::numeric_limits<double>::quiet_NaN();
   std::string doubt; ///< why the index is unknown or not trusted; "" otherwise
 };
 
