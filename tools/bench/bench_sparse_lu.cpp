@@ -70,9 +70,9 @@ double residual(const Matrix& m, std::size_t step, const std::vector<double>& x)
   return std::accumulate(left.begin(), left.end(), 0.0, [](double most, double value) { return std::max(most, std::abs(value)); });
 }
 
-class Own {
+class SteplapLu {
 public:
-  explicit Own(const Matrix& m) : m_(m) {}
+  explicit SteplapLu(const Matrix& m) : m_(m) {}
   void step(std::size_t k, std::vector<double>& x) {
     lu_.begin(m_.n);
     for (std::size_t i = 0; i < m_.entries.size(); ++i) lu_.add(m_.entries[i].row, m_.entries[i].column, m_.values[k][i]);
@@ -149,9 +149,9 @@ template <class Lu> void measure(benchmark::State& state, const Matrix& matrix) 
   state.counters["residual"] = worst;
 }
 
-void row_own(benchmark::State& state) { measure<Own>(state, row_of(static_cast<int>(state.range(0)))); }
+void row_own(benchmark::State& state) { measure<SteplapLu>(state, row_of(static_cast<int>(state.range(0)))); }
 void row_klu(benchmark::State& state) { measure<Klu>(state, row_of(static_cast<int>(state.range(0)))); }
-void grid_own(benchmark::State& state) { measure<Own>(state, grid_of(static_cast<int>(state.range(0)))); }
+void grid_own(benchmark::State& state) { measure<SteplapLu>(state, grid_of(static_cast<int>(state.range(0)))); }
 void grid_klu(benchmark::State& state) { measure<Klu>(state, grid_of(static_cast<int>(state.range(0)))); }
 
 BENCHMARK(row_own)->Arg(3)->Arg(10)->Arg(100)->Arg(1000);

@@ -28,7 +28,7 @@ public:
   [[nodiscard]] const std::vector<std::string>& overrides() const { return overrides_; }
   /// Returns the sliders of the file, as it was when last read.
   [[nodiscard]] const std::vector<Slider>& sliders() const { return sliders_; }
-  /// Title of the model; "" if it has none.
+  /// Returns the title of the model; "" if it has none.
   [[nodiscard]] const std::string& title() const { return title_; }
   /// Returns all files accessed by the last call of read(), even if it failed.
   [[nodiscard]] const std::vector<std::string>& files() const { return files_; }
@@ -52,7 +52,7 @@ private:
   std::vector<std::string> overrides_, files_;
   std::unique_ptr<const Model> given_;
   std::vector<Slider> sliders_;
-  std::map<std::string, std::size_t> by_path_; ///< index in `sliders_`
+  std::map<std::string, std::size_t> by_path_; ///< index in `sliders_` by path
   std::vector<std::string> varied_;            ///< paths for which `variants_` was prepared
   std::unique_ptr<Variants> variants_;
 };

@@ -112,8 +112,8 @@ PageReply asset_reply(const char* type, std::string_view text) {
 Explorer::Explorer(const std::vector<std::string>& paths, const std::vector<std::string>& overrides) {
   std::vector<Diagnostic> problems;
   for (const std::string& path : paths) {
-    models_.push_back(std::make_unique<Watched>(Watched{ExploredModel(path, overrides), "", {}}));
-    Watched& one = *models_.back();
+    models_.push_back(std::make_unique<WatchedModel>(WatchedModel{ExploredModel(path, overrides), "", {}}));
+    WatchedModel& one = *models_.back();
     try {
       one.model.read();
       one.state = model_state_json(one.model, {});
@@ -147,7 +147,7 @@ void Explorer::read_again(std::size_t k) {
     models_[k]->is_reading = true;
   }
   const bool is_taken = queue_->add(WorkQueue::Urgency::page, "", [this, k](const WorkQueue::IsStale&) {
-    Watched& one = *models_[k];
+    WatchedModel& one = *models_[k];
     std::vector<Diagnostic> problems;
     try {
       one.model.read();
@@ -171,7 +171,7 @@ void Explorer::read_again(std::size_t k) {
 
 void Explorer::tick() {
   for (std::size_t k = 0; k < models_.size(); ++k) {
-    Watched& one = *models_[k];
+    WatchedModel& one = *models_[k];
     {
       const std::lock_guard lock(mutex_);
       if (one.is_reading) continue;
@@ -189,8 +189,8 @@ void Explorer::tick() {
     version = version_;
   }
   const auto now = Clock::now();
-  const auto is_due = [&](const Waiting& w) { return *w.is_gone || w.since != version || now > w.until; };
-  for (Waiting& w : waiting_)
+  const auto is_due = [&](const WaitingRequest& w) { return *w.is_gone || w.since != version || now > w.until; };
+  for (WaitingRequest& w : waiting_)
     if (is_due(w)) w.send(json_reply(state_text()));
   std::erase_if(waiting_, is_due);
 }

@@ -51,13 +51,13 @@ public:
   void end();
 
 private:
-  struct Waiting {
+  struct WaitingRequest {
     long since;
     std::chrono::steady_clock::time_point until;
     std::shared_ptr<const std::atomic<bool>> is_gone; ///< true when the client has closed the connection
     SendReply send;
   };
-  struct Watched {
+  struct WatchedModel {
     ExploredModel model;                   ///< used only by the worker thread once it runs
     std::string state;                     ///< JSON of the model in replies to "state"; guarded by the mutex
     FileWatch watch;                       ///< used only by the thread of tick()
@@ -75,10 +75,10 @@ private:
                 std::function<PageReply(const WorkQueue::IsStale&)> work);
   [[nodiscard]] std::string state_text();
 
-  std::vector<std::unique_ptr<Watched>> models_;
+  std::vector<std::unique_ptr<WatchedModel>> models_;
   std::mutex mutex_;
-  long version_ = 1;             ///< version of the state, which increases with every change; guarded by the mutex
-  std::vector<Waiting> waiting_; ///< used only by the thread of tick()
+  long version_ = 1;                    ///< version of the state, which increases with every change; guarded by the mutex
+  std::vector<WaitingRequest> waiting_; ///< used only by the thread of tick()
   std::unique_ptr<WorkQueue> queue_;
 };
 

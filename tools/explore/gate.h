@@ -43,11 +43,11 @@ public:
   /// and refuses further ones.
   [[nodiscard]] const std::string& first_path() const { return first_path_; }
 
-  /// Returns the reason for refusing a request; "" if it is permitted. Requests for first_path() are always permitted here; takes_first()
+  /// Returns the reason for refusing a request; "" if it is permitted. Requests for first_path() are always permitted here; is_first_use()
   /// checks them.
-  [[nodiscard]] std::string refusal(const RequestHead& knock) const;
+  [[nodiscard]] std::string refusal(const RequestHead& head) const;
   /// Returns true for the first request for first_path(), false for every later one.
-  [[nodiscard]] bool takes_first(const RequestHead& knock);
+  [[nodiscard]] bool is_first_use(const RequestHead& head);
 
 private:
   [[nodiscard]] bool is_first_path(const std::string& target) const;

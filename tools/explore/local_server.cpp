@@ -27,7 +27,7 @@ using Response = http::response<http::string_body>;
 
 std::string text_of(boost::string_view text) { return std::string(text.data(), text.size()); }
 
-RequestHead knock_of(const http::request<http::string_body>& request) {
+RequestHead head_of(const http::request<http::string_body>& request) {
   const auto header = [&](boost::string_view name) {
     const auto found = request.find(name);
     return found == request.end() ? std::string() : text_of(found->value());
@@ -102,25 +102,25 @@ private:
       return send({400, "text/plain; charset=utf-8", "That is no request.\n"}, false);
     if (error) return; // the connection was closed or timed out
     const http::request<http::string_body>& request = parser_->get();
-    const RequestHead knock = knock_of(request);
+    const RequestHead head = head_of(request);
     keeps_open_ = request.keep_alive();
     if (!refusal_.empty()) return send({403, "text/plain; charset=utf-8", "Refused: " + refusal_ + ".\n"}, false);
-    if (const std::string why = shared_->gate.refusal(knock); !why.empty())
+    if (const std::string why = shared_->gate.refusal(head); !why.empty())
       return send({403, "text/plain; charset=utf-8", "Refused: " + why + ".\n"}, false);
-    if (shared_->gate.takes_first(knock)) {
+    if (shared_->gate.is_first_use(head)) {
       PageReply reply{303, "text/plain; charset=utf-8", ""};
       reply.location = shared_->gate.folder();
       return send(std::move(reply), keeps_open_);
     }
     const std::string& folder = shared_->gate.folder();
-    if (!knock.target.starts_with(folder)) return send({403, "text/plain; charset=utf-8", "Refused: this address served once.\n"}, false);
-    hand_over(knock, request.body());
+    if (!head.target.starts_with(folder)) return send({403, "text/plain; charset=utf-8", "Refused: this address served once.\n"}, false);
+    hand_over(head, request.body());
   }
 
-  void hand_over(const RequestHead& knock, const std::string& body) {
-    const std::string rest = knock.target.substr(shared_->gate.folder().size());
+  void hand_over(const RequestHead& head, const std::string& body) {
+    const std::string rest = head.target.substr(shared_->gate.folder().size());
     const std::size_t mark = rest.find('?');
-    PageRequest asked{knock.method == "POST", rest.substr(0, mark), mark == std::string::npos ? "" : rest.substr(mark + 1), body};
+    PageRequest asked{head.method == "POST", rest.substr(0, mark), mark == std::string::npos ? "" : rest.substr(mark + 1), body};
     asked.is_gone = is_gone_;
     watch_for_close();
     // A worker thread may send the reply, so the connection must be kept alive until then.

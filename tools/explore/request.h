@@ -13,8 +13,8 @@ struct PageRequest {
   bool is_post = false; ///< true for POST, false for GET
   std::string path;     ///< path after the token: "run"; "" for the page itself
   std::string query;    ///< text after the question mark, not decoded
-  std::string body;     ///< at most LocalServer::k_longest_body bytes
-  /// Becomes true when the client closes the connection: the reply is no longer read.
+  std::string body;     ///< content of the request, at most LocalServer::k_longest_body bytes
+  /// Becomes true when the client closes the connection, after which no reply is needed.
   std::shared_ptr<const std::atomic<bool>> is_gone = std::make_shared<std::atomic<bool>>(false);
 };
 

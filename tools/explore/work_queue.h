@@ -23,7 +23,7 @@ public:
   static constexpr std::size_t k_most_waiting = 256; ///< maximum number of waiting tasks; further ones are rejected
 
   WorkQueue();
-  /// Discards waiting tasks, marks the running one as stale and waits for it.
+  /// Discards the waiting tasks, marks the running task as stale, and waits until it ends.
   ~WorkQueue();
   WorkQueue(const WorkQueue&) = delete;
   WorkQueue& operator=(const WorkQueue&) = delete;

@@ -1,7 +1,7 @@
-// Data of the figures in docs/: figure_data DIR writes the files that limit_surface.gp and overlap.gp read.
+// Computes the data of figures in docs/: figure_data DIR writes the files that limit_surface.gp and overlap.gp read.
 //
-// The joint is that of the paper's front limb: two corners mitred at 45°, 1165 interfaces of 10 mm each,
-// μ = 0.25, p = 0.10 MPa. Wrenches about the limb's centre of gravity.
+// The joint is the front limb of the paper's transformer: two corners mitred at 45°, 1165 interfaces with an overlap of 10 mm, μ = 0.25, p
+// = 0.10 MPa. Wrenches refer to the limb's centre of gravity.
 #include "elements/step_lap/patch/overlap.h"
 #include "elements/step_lap/patch/required_pressure.h"
 #include "mbd/base/portable_math.h"

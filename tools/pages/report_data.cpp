@@ -236,7 +236,7 @@ std::string report_data(const Results& run, OrderedJson summary, std::size_t bud
   return data_of({run}, std::move(summaries), budget);
 }
 
-OrderedJson still_run(const LoadedModel& loaded) {
+OrderedJson run_without_histories(const LoadedModel& loaded) {
   return {{"name", loaded.name},
           {"summary", {{"extremes", Json::object()}}},
           {"events", Json::array()},
@@ -244,7 +244,7 @@ OrderedJson still_run(const LoadedModel& loaded) {
           {"drawing", parse_ordered(drawing_json(loaded.model, *loaded.views))}};
 }
 
-OrderedJson still_run(Results run) {
+OrderedJson run_without_histories(Results run) {
   Json summary = parsed(run, run.summary, "summary.json"), drawing = parsed(run, run.drawing, "drawing.json");
   const Json worst = summary.value(Json::json_pointer("/overview/worst_instant"), Json());
   const double t = worst.is_number() ? worst.get<double>() : run.times.back();

@@ -20,10 +20,10 @@ namespace steplap {
 [[nodiscard]] std::string report_data(const Results& run, OrderedJson summary, std::size_t budget);
 
 /// Returns the data of a run without time histories, for pages with a drawing only.
-[[nodiscard]] OrderedJson still_run(const LoadedModel& loaded);
+[[nodiscard]] OrderedJson run_without_histories(const LoadedModel& loaded);
 
 /// Returns the data of a run at its worst instant, or at its end if it has none, without time histories. Throws as report_data().
-[[nodiscard]] OrderedJson still_run(Results run);
+[[nodiscard]] OrderedJson run_without_histories(Results run);
 
 /// Returns equivalent JSON without '<', which is escaped; it occurs within strings only.
 [[nodiscard]] std::string in_script(const std::string& json);

@@ -39,12 +39,12 @@ void Interruption::raise_if_any() {
   if (raised_) throw py::error_already_set(*raised_);
 }
 
-Unlocked::Counted::Counted() {
+Unlocked::CountedComputation::CountedComputation() {
   if (g_is_exiting) throw std::runtime_error("the Python interpreter exits");
   ++g_running;
 }
 
-Unlocked::Counted::~Counted() { --g_running; }
+Unlocked::CountedComputation::~CountedComputation() { --g_running; }
 
 void add_computation(py::module_&) {
   // A forked child process has none of its parent's computations.

@@ -35,13 +35,13 @@ public:
   ~Unlocked() = default;
 
 private:
-  struct Counted {
-    Counted(); // throws std::runtime_error if the interpreter exits
-    Counted(const Counted&) = delete;
-    Counted& operator=(const Counted&) = delete;
-    ~Counted();
+  struct CountedComputation {
+    CountedComputation(); // throws std::runtime_error if the interpreter exits
+    CountedComputation(const CountedComputation&) = delete;
+    CountedComputation& operator=(const CountedComputation&) = delete;
+    ~CountedComputation();
   };
-  Counted counted_; // first member, so that the computation is counted until the GIL is acquired again
+  CountedComputation counted_; // first member, so that the computation is counted until the GIL is acquired again
   py::gil_scoped_release released_;
 };
 

@@ -131,9 +131,9 @@ std::string page_of(const PyRun& run) {
   namespace fs = std::filesystem;
   std::string folder = (fs::temp_directory_path() / "steplap-XXXXXX").string();
   if (!mkdtemp(folder.data())) throw FileError(folder, "no temporary folder can be made");
-  struct Remover {
+  struct FolderRemover {
     std::string folder;
-    ~Remover() {
+    ~FolderRemover() {
       std::error_code ignored;
       fs::remove_all(folder, ignored);
     }

@@ -1,6 +1,5 @@
-// Andrews' mechanism reduced to the crank angle β: three circle intersections give
-// the pose, two derivatives with respect to β carried along give the effective
-// inertia m(β) and its slope: m β̈ = Q(β) − ½ m' β̇².
+// Andrews' mechanism reduced to the crank angle β. The pose follows from three circle intersections. Their first and second derivatives
+// with respect to β give the effective inertia m(β) and its slope: m β̈ = Q(β) − ½ m' β̇².
 
 #include "andrews.h"
 #include "dop853_run.h"

@@ -84,7 +84,7 @@ AndrewsResult run_andrews_kkt_ida(AndrewsVariant variant, double tolerance) {
   SUNLinearSolver solver = SUNLinSol_Dense(yv.get(), matrix, sundials.context);
   require(IDASetLinearSolver(memory, solver, matrix), "IDASetLinearSolver");
   require(IDASetId(memory, id.get()), "IDASetId");
-  // Multipliers follow from the state: they need no error control of their own.
+  // Excludes the multipliers from the error control, because they follow from the state.
   require(IDASetSuppressAlg(memory, SUNTRUE), "IDASetSuppressAlg");
   require(IDASetMaxNumSteps(memory, 10000000), "IDASetMaxNumSteps");
   const double end = k_andrews_end[static_cast<int>(variant)];

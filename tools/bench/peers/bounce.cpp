@@ -1,6 +1,5 @@
-// B5: a mass of 1 kg dropped from 1 m onto a unilateral spring and damper without
-// adhesion, ARKODE with its root finding. Modes: flight, contact (force positive),
-// held (below the surface with the force held at zero).
+// B5: a mass of 1 kg dropped from 1 m onto a unilateral spring and damper without adhesion, integrated by ARKODE with its root finding.
+// Modes: flight, contact (positive force), held (below the surface, with zero force).
 
 #include "arkode_runner.h"
 #include "mechanisms.h"

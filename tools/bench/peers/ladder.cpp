@@ -28,7 +28,7 @@ void print_table(const std::vector<Rung>& rungs) {
 }
 
 double cpu_ms_at(const std::vector<Rung>& rungs, const std::string& problem, const std::string& program, double error) {
-  std::vector<std::pair<double, double>> front; // error, time
+  std::vector<std::pair<double, double>> front; // Pareto-optimal pairs of error and time
   for (const Rung& r : rungs)
     if (r.problem == problem && r.program == program && std::isfinite(r.error)) front.emplace_back(std::max(r.error, 1e-16), r.cpu_ms);
   std::sort(front.begin(), front.end());

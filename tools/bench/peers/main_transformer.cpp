@@ -82,7 +82,7 @@ History read_reference(const std::string& path) {
     }
     rows.push_back(row);
   }
-  if (!rows.empty()) rows.erase(rows.begin()); // the header
+  if (!rows.empty()) rows.erase(rows.begin()); // removes the header
   return rows;
 }
 

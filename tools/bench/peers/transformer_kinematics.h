@@ -33,8 +33,8 @@ inline Ratios ratios(double x, const Turn& of_x) {
   return {1.0 + z * (0.5 + z * (5.0 / 24.0 + z * (61.0 / 720.0))), x + x * z * (1.0 / 3.0 + z * (2.0 / 15.0 + z * (17.0 / 315.0)))};
 }
 
-// Pose and velocity of body 1 seen from body 5, in the axes of body 5:
-// (rx, ry) from the centre of 5 to that of 1, phi = θ1 − θ5.
+// Pose and velocity of body 1 relative to body 5, in the axes of body 5: (rx, ry) from the centre of body 5 to that of body 1, and phi = θ1
+// − θ5.
 struct Kinematics {
   double c, s, versine;          // cosine, sine and versine of θ5
   double cp, sp, sec, tan, sec2; // functions of phi

@@ -40,7 +40,7 @@ inline constexpr double k_wood_stiffness = 2e8, k_wood_damping = 5e4;
 inline constexpr double k_top_stiffness = 2e8, k_top_damping = 2e5; // sum of both devices, N/m, N s/m
 inline constexpr double k_bottom_stiffness = 2e8, k_bottom_damping = 4e4;
 inline constexpr double k_tank_stiffness = 4e7, k_tank_damping = 4e4;
-inline constexpr double k_suspension_stiffness = 2e8, k_suspension_damping = 1.5e6; // of each suspension, N/m, N s/m
+inline constexpr double k_suspension_stiffness = 2e8, k_suspension_damping = 1.5e6; // for each of the two, N/m, N s/m
 inline constexpr double k_suspension_arm = 1.5;
 inline constexpr double k_friction = 0.35;
 

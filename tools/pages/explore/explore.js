@@ -268,7 +268,7 @@
     onChoose: chooseOnMap,
     ask: async (x, y, cells) => {
       const values = sliders.changed();
-      if (!answers.isIdle) return { cells: [] }; // runs have priority
+      if (!answers.isIdle) return { cells: [] }; // a run has priority over the map
       try {
         return await answers.post('cells', { model, values, x, y, cells });
       } catch {

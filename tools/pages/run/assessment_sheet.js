@@ -1,5 +1,6 @@
-// The sheet of an assessment: papers, decision, worst events, dependence of the decision, assumptions, criteria, findings on arrival. The
-// sheet of a static proof alone: drawing, cases, reactions of each part. Lines that do not fit are counted and are on the following sheets.
+// The sheet of an assessment: shipping data, decision, worst events, dependence of the decision, assumptions, criteria, findings on
+// arrival. The sheet of a static proof: drawing, load cases, reactions of each part. Lines that do not fit are counted and are on the
+// following sheets.
 steplap.assessmentSheet = () => {
   const make = steplap.make, { table } = steplap.tables, { one, percent, isKnown } = steplap.numbers, A = steplap.assessment;
   const { short, part, rest, bullets, orBlank, named, drawing } = steplap.sheet;

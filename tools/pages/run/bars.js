@@ -1,5 +1,5 @@
-// Utilisation of each limit as bars on one scale, the highest first, with the limit as a line through all of them. Several runs have one
-// bar each under a common name; bars of the same kind at the same place are paired even if their names differ.
+// Draws the utilisation of each limit as a bar, all on one scale, the highest first, with the limit as a line. Several runs have one bar
+// each under a common name; bars of one kind at the same position are paired even if their names differ.
 steplap.bars = (() => {
   const make = steplap.make, { percent, full, isKnown } = steplap.numbers;
   const first = 8, firstOfSeveral = 6, firstOfOthers = 3; // number of bars shown initially: for one run, for several runs, of other limits

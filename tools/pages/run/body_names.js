@@ -2,7 +2,7 @@
 // body or name. Names without room are omitted, and the legend shows their number (legend.js).
 (() => {
   const make = steplap.make, { add, minus, scaled, dot, length, seenIn, apply } = steplap.geometry;
-  const font = '12px "DejaVu Sans", Arial, sans-serif', lineHeight = 14, air = 3; // pixels
+  const font = '12px "DejaVu Sans", Arial, sans-serif', lineHeight = 14, air = 3; // font; line height and margin, pixels
   const rings = [6, 18, 34, 54, 80, 110, 150, 200, 260]; // distances tried between a name and the box around its body, pixels
   const most = 40, mostCrowded = 16; // largest number of bodies with names; largest number with names far from the body
   const onBody = 6, beside = 12; // number of stored positions per name, on the body and next to it, for use when bodies pass each other

@@ -7,7 +7,7 @@
   const shown = 0.6; // largest slide in the view, relative to its radius
   const room = 0.35; // largest part of the view that may hide bodies
   const air = 8, textHeight = 16, fieldRoom = 110; // pixels; `fieldRoom` is reserved for an arrow of gravity (loads.js)
-  const radiusFor = (width) => Math.min(62, Math.max(38, 0.11 * width)); // pixels
+  const radiusFor = (width) => Math.min(62, Math.max(38, 0.11 * width)); // radius of the view, pixels
 
   // Returns the slide to be magnified: that of the first criterion if it limits a slide, otherwise the largest one in the story.
   function decidedBy(run) {

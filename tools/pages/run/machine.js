@@ -5,7 +5,7 @@ steplap.Scene = (() => {
   const margin = 36; // space for symbols around the machine, pixels
   const nearby = 0.75; // a body farther away than this, relative to the size of the machine, may leave the picture
   const most = 6; // largest size of the view, relative to the machine, for including the opening instant
-  const symbolSize = (width) => Math.min(11, Math.max(7, width / 70)); // pixels
+  const symbolSize = (width) => Math.min(11, Math.max(7, width / 70)); // size of a symbol, pixels
 
   class Body {
     constructor(raw, run) {

@@ -67,7 +67,7 @@
     const largest = moving.reduce((a, b) => (b.reach > a.reach ? b : a));
     return far > scene.size && apart < 0.5 * scene.size ? { name: largest.name, carried: null, travel } : null;
   }
-  // Returns for each body the bodies to which elements connect it.
+  // Returns for each body the names of the bodies connected to it by elements.
   function neighboursOf(scene) {
     const found = new Map(['ground', ...scene.bodies.keys()].map((name) => [name, new Set()]));
     for (const e of scene.run.drawing.elements) {

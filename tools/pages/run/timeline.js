@@ -2,7 +2,7 @@
 // begins and ends. Overlapping signs are merged into one with a count.
 steplap.Timeline = (() => {
   const make = steplap.make;
-  const size = 14, laneHeight = 20, thumb = 16, causeHeight = 22; // pixels
+  const size = 14, laneHeight = 20, thumb = 16, causeHeight = 22; // sizes in pixels
   const mostCauses = 3; // largest number of loads with a curve
 
   // Pairs of events that begin and end an interval.

@@ -18,8 +18,7 @@ steplap.verdict = (() => {
     const overview = steplap.overview.of(run), badge = steplap.overview.badgeOf(run);
     const box = make('div', { class: 'card', 'data-run': run.name });
     if (!isOne) box.append(make('h2', { class: 'run-name' }, run.name));
-    const sign =
-      badge.name === 'none' ? '' : make('span', { class: `badge ${badge.name}` }, badge.word); // no verdict without criteria
+    const sign = badge.name === 'none' ? '' : make('span', { class: `badge ${badge.name}` }, badge.word); // no verdict without criteria
     box.append(make('p', { class: 'verdict-line' }, sign, make('span', { class: 'reason' }, overview.reason)));
     if (overview.isOld)
       box.append(make('p', { class: 'note old' },

@@ -1,4 +1,4 @@
-// Charts by Plotly in one style; they shrink to the paper width when the page is printed.
+// Draws charts by Plotly in one style, with the width of the paper for printing.
 study.charts = (() => {
   const { make } = study;
   const colours = {
