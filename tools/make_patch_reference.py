@@ -1,18 +1,16 @@
 #!/usr/bin/env python3
-"""Reference values of the friction limit surface, to 50 digits.
+"""Computes reference values of the friction limit surface to 50 digits.
 
-Writes a table of polygons (with holes), tractions and twists with the exact dissipation h and its
-gradient (f_x, f_y, m), for tests/elements/step_lap/patch_reference_test.cpp:
+Writes a table of polygons (with holes), tractions and twists with the exact dissipation h and its gradient (f_x, f_y, m), for
+tests/elements/step_lap/patch_reference_test.cpp:
 
     python3 tools/make_patch_reference.py > tests/data/patch_reference.csv
 
-The inputs are doubles, printed so that they read back exactly; the outputs belong to exactly those
-doubles. Values come from the edge formulas of docs/explanation/limit_surface.md in 160 digits, where their
-cancellation (up to |c|^3/area for a centre c, 1e24 here) does not matter. Every twist that turns
-about a point within 20 radii is also checked against the two-dimensional integral of the
-definition itself,
+Inputs are doubles, printed so that they are read back exactly; outputs are exact for these doubles. They are computed with the edge formulas of
+docs/explanation/limit_surface.md in 160 digits, of which cancellation (up to |c|^3/area for a centre c, 1e24 here) leaves enough. Every
+twist about a point within 20 radii is also checked against the integral that defines h,
     h = integral of w |v + omega z x (r - reference)|,
-by Gauss-Legendre quadrature over the triangles (centre, edge). Needs mpmath.
+by Gauss-Legendre quadrature over the triangles (centre, edge). Requires mpmath.
 """
 import math
 import random
@@ -35,7 +33,7 @@ def exact(rings):
 
 
 def moments(rings):
-    """Area, centroid and the second moments about the centroid."""
+    """Returns area, centroid, and second moments about the centroid."""
     area = sx = sy = mpf(0)
     for (ax, ay), (bx, by) in edges(rings):
         c = ax * by - ay * bx
@@ -54,7 +52,7 @@ def moments(rings):
 
 
 def integrals_about(rings, traction, cx, cy):
-    """Integrals of w|r| and w r/|r|, r from c, for w = traction[0] + traction[1:].r there."""
+    """Returns the integrals of w|r| and w r/|r| with r measured from c and w = traction[0] + traction[1:].r."""
     w, bx, by = traction
     distance = gx = gy = mpf(0)
     for (ax, ay), (ex, ey) in edges(rings):
@@ -80,7 +78,7 @@ def integrals_about(rings, traction, cx, cy):
 
 
 def reference_values(rings, traction, point, nu):
-    """h, f_x, f_y, m about `point`; traction = value at the centroid and its gradient."""
+    """Returns h, f_x, f_y, and m about `point`. `traction`: value at the centroid and gradient."""
     vx, vy, omega = (mpf(c) for c in nu)
     px, py = (mpf(c) for c in point)
     area, gx, gy, xx, xy, yy = moments(rings)
@@ -97,7 +95,7 @@ def reference_values(rings, traction, point, nu):
     distance, dx, dy = integrals_about(rings, (there, bx, by), cx, cy)
     sign = mp.sign(omega)
     fx, fy = -sign * dy, sign * dx
-    # moment about c is sign*distance; carried to the point
+    # The moment about c is ±distance; it is transferred to the point.
     return abs(omega) * distance, fx, fy, sign * distance + (cx - px) * fy - (cy - py) * fx
 
 
@@ -105,7 +103,7 @@ GAUSS = {}
 
 
 def gauss(n):
-    """Nodes and weights on [0, 1]."""
+    """Returns nodes and weights of Gauss-Legendre quadrature on [0, 1]."""
     if n not in GAUSS:
         rule = []
         for i in range(n):
@@ -122,7 +120,7 @@ def gauss(n):
 
 
 def check_by_quadrature(rings, traction, point, nu):
-    """The definition itself, in 30 digits, over triangles from the centre of rotation."""
+    """Compares with the integral that defines h, in 30 digits, over triangles from the centre of rotation."""
     with mp.workdps(30):
         _, gx, gy, *_ = moments(rings)
         vx, vy, omega = (mpf(c) for c in nu)
@@ -132,9 +130,9 @@ def check_by_quadrature(rings, traction, point, nu):
         for (ax, ay), (bx, by) in edges(rings):
             twice = (ax - cx) * (by - cy) - (ay - cy) * (bx - cx)
             if abs(twice) < 1e-25:
-                continue  # the centre is on the edge's line: no triangle
-            # the integrand bends at the foot of the centre on the edge: cut there, and around it
-            # in steps that grow with the distance
+                continue  # the centre is on the line of the edge, so the triangle is degenerate
+            # The integrand varies fastest at the foot of the centre on the edge. The edge is divided there, and around it in intervals that
+            # grow with the distance.
             ex, ey = bx - ax, by - ay
             square = ex * ex + ey * ey
             foot, width = ((cx - ax) * ex + (cy - ay) * ey) / square, abs(twice) / square
@@ -169,7 +167,7 @@ def polygons(rng):
     square = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
     yield "square", [square], (1.0, 0.0, 0.0)
     yield "square_linear", [square], (1.0, 0.75, -0.5)
-    r, l, w = 0.5**0.5, 0.5**0.5, 0.005  # the overlap band of a mitred corner
+    r, l, w = 0.5**0.5, 0.5**0.5, 0.005  # overlap of a mitred corner, a band
     yield "strip", [[(-0.25 + s * r + q * r, 1.15 + s * r - q * r)
                      for s, q in ((0, -w), (0, w), (l, w), (l, -w))]], (29125000.0, 0.0, 0.0)
     yield "triangle", [[(2.0, 1.0), (3.5, 1.25), (2.25, 2.0)]], (0.5, 0.0, 0.0)
@@ -183,7 +181,7 @@ def polygons(rng):
 
 
 def centres(rng, rings, gx, gy, radius):
-    """Named centres of rotation, doubles."""
+    """Yields centres of rotation with a name for their position; coordinates are doubles."""
     for k in range(3):
         yield "inside", gx + 0.2 * radius * rng.uniform(-1, 1), gy + 0.2 * radius * rng.uniform(-1, 1)
     sides = list(edges(rings))
@@ -194,7 +192,7 @@ def centres(rng, rings, gx, gy, radius):
         for side in (-1e-9, 1e-9):
             yield "near_edge", (ax + bx) / 2 + side * (by - ay) / length, (ay + by) / 2 - side * (bx - ax) / length
         yield "on_line", 1.5 * bx - 0.5 * ax, 1.5 * by - 0.5 * ay
-    # 5.9 and 6.1 are either side of the change from closed form to expansion
+    # 5.9 and 6.1 are on both sides of the change from the closed form to the expansion.
     for far in (1, 1.5, 3, 5, 5.9, 6.1, 8, 12, 30, 100, 1e3, 1e4, 1e6, 1e8):
         a = rng.uniform(0, 6.2831853)
         yield "far", gx + far * radius * float(mp.cos(a)), gy + far * radius * float(mp.sin(a))

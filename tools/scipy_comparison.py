@@ -1,9 +1,9 @@
-"""Random scenes by steplap beside SciPy: what check_by_scipy and check_wheels_by_scipy have in common.
+"""Common part of check_by_scipy and check_wheels_by_scipy: compares random scenes in steplap and SciPy.
 
-A scene is made from a seed and has `toml()`, what steplap reads; `solve(tolerance)`, the end by SciPy, which may raise NoAnswer; and
-`finals(summary)`, tuples of a name, steplap's value and its estimated error (None: unknown), and the value's place in what solve() gives.
-Values have to agree within three times what steplap estimates, three times what two tolerances of SciPy differ by, and 1e-8. An error that is
-unknown allows nothing to be said: such a run is counted by itself, as one that stops is.
+A scene is made from a seed. `toml()` returns its model file for steplap. `solve(tolerance)` returns SciPy's final values, or raises NoAnswer.
+`finals(summary)` returns tuples of a name, steplap's value, its error estimate (None: unknown), and the value's index in the result of
+solve(). Values must agree within three times steplap's error estimate, three times the difference of two tolerances of SciPy, and 1e-8. Runs
+with an unknown error are counted separately, like runs that stop.
 """
 import argparse
 import json
@@ -14,7 +14,7 @@ import tempfile
 
 import numpy
 
-FINEST = 1e-12  # of SciPy: asked where its two usual tolerances disagree with steplap, which a kink may fool alike
+FINEST = 1e-12  # tolerance of SciPy used if two larger ones agree with each other but not with steplap, because both may miss a kink
 
 
 class NoAnswer(Exception):
@@ -22,20 +22,20 @@ class NoAnswer(Exception):
 
 
 def worst(scene, summary, exact, rough):
-    """Returns the largest ratio of difference and allowed difference, and its place; None as ratio if an error is unknown."""
+    """Returns the largest ratio of a difference to the permitted one, and the name of the value; ratio None if an error is unknown."""
     ratio, where = 0.0, ""
     for name, value, error, place in scene.finals(summary):
         if error is None:
             return None, name
         allowed = 3 * error + 3 * abs(exact[place] - rough[place]) + 1e-8 * (1 + abs(exact[place]))
         now = abs(value - exact[place]) / allowed
-        if not now <= ratio:  # what is no number, too
+        if not now <= ratio:  # also true for NaN
             ratio, where = now, f"{name}: {value} and {exact[place]}, error {error}"
     return ratio, where
 
 
 def outcome(given, scene, path, folder, integrator, exact, rough):
-    """Result of one run, and its message."""
+    """Runs a scene with one integrator. Returns the kind of result and a message."""
     run = subprocess.run([given.program, "simulate", path, "-o", folder, "--force", "--estimate-error", "-q", "--integrator", integrator], capture_output=True, text=True)
     if run.returncode != 0:
         return "stop", run.stderr.strip().splitlines()[0]
@@ -50,7 +50,7 @@ def outcome(given, scene, path, folder, integrator, exact, rough):
 
 
 def main(description, scene_of, tolerances):
-    """`tolerances`: two tolerances of SciPy, the finer one first."""
+    """Runs the scenes of the command line. `tolerances`: two tolerances of SciPy, the finer one first."""
     arguments = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("first", type=int)
     arguments.add_argument("last", type=int)
@@ -71,7 +71,7 @@ def main(description, scene_of, tolerances):
                     counts[how] += 1
                     if text:
                         print(f"{seed} {integrator}: {how}: {text}", flush=True)
-            except (NoAnswer, numpy.linalg.LinAlgError):  # the latter: rows that become one
+            except (NoAnswer, numpy.linalg.LinAlgError):  # the latter for constraint rows that become dependent
                 counts["without an answer of SciPy"] += 1
     print(", ".join(f"{count} {what}" for what, count in counts.items()))
     sys.exit(1 if counts["disagree"] else 0)

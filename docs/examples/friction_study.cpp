@@ -1,5 +1,5 @@
-// How far does the block slide on the vehicle that brakes, if the deck holds better or worse? One model, many values,
-// on all processors:
+// Computes how far a block slides on a braking vehicle for different frictions of the deck. One model is run with many values on all
+// processors:
 //   friction_study braked_block.toml
 #include <steplap/catalog.h>
 #include <steplap/model.h>
@@ -17,10 +17,10 @@ using namespace steplap;
 
 struct Sample {
   double friction = 0.0;
-  double slide = 0.0; // m, forwards
+  double slide = 0.0; // slide of the block forwards, m
 };
 
-// A system and a run of its own: nothing is shared but models, which nobody changes.
+// Each call has its own system and run. Only the models are shared between threads; they are not changed.
 double slide_with(double friction, const Model& given, const Model& whole) {
   const auto system = instantiate(given, {{"element.deck friction.static_friction", friction}});
   const RunResult run = simulate(*system, start_of(whole, *system), options_of(whole));

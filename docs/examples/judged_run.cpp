@@ -1,4 +1,4 @@
-// A model run, its errors estimated and judged as `steplap simulate` does it, with the same files in the end:
+// Runs a model with error estimate and verdict, and writes the same files as `steplap simulate`:
 //   judged_run braked_block.toml out/braked_block [simulation.end=0.5 …]
 #include <steplap/judged_run.h>
 
@@ -21,15 +21,15 @@ int main(int argc, char** argv) try {
   if (!report.judgement.distrust.empty()) std::printf("not to be trusted: %s\n", report.judgement.distrust.c_str());
   std::printf("verdict: %s\n", name_of(report.judgement.verdict));
 
-  const Columns columns = report.columns(); // a matrix of all rows written: columns.names, columns.values
+  const Columns columns = report.columns(); // matrix with one row per output time: columns.names, columns.values
   std::printf("%ld rows of %ld columns to t = %g s\n", static_cast<long>(columns.values.rows()), static_cast<long>(columns.values.cols()),
               report.run.result.final_state.t);
   report.write(argv[2], true);
   return report.run.failure ? 4 : 0;
-} catch (const ModelError& error) { // each problem has its file, line and column: error.diagnostics()
+} catch (const ModelError& error) { // error.diagnostics() gives file, line and column of each error
   std::fprintf(stderr, "%s\n", error.what());
   return 3;
-} catch (const std::exception& error) { // FileError: path; NumericalFailure: nothing could be run
+} catch (const std::exception& error) { // FileError has a path; NumericalFailure: the run could not start
   std::fprintf(stderr, "%s\n", error.what());
   return 4;
 }

@@ -1,4 +1,4 @@
-// A kind of element that steplap does not have, used in a model file and judged with the verdict: an orifice damper.
+// Adds an element kind, an orifice damper, which model files can use and whose runs get a verdict:
 //   own_element own_element.toml
 #include <steplap/catalog.h>
 #include <steplap/judged_run.h>
@@ -12,11 +12,11 @@ using namespace steplap;
 
 struct OrificeDamper : Element {
   std::string a, b = "ground";           // markers
-  double constant = 0.0, strength = 0.0; // N s²/m², N
+  double constant = 0.0, strength = 0.0; // N s²/m²; largest permitted force, N
 };
 
-struct OrificeLaw { // f = −c rate |rate| on a, away from b. Nothing is stored, so that all of −f rate is booked as dissipated.
-  static constexpr int k_event_count = 0; // smooth: no events of its own
+struct OrificeLaw {                       // Force on a, away from b: f = −c rate |rate|. No energy is stored, so −f rate is dissipated.
+  static constexpr int k_event_count = 0; // smooth, so there are no events
   static constexpr bool k_is_contact = false;
   double c = 0.0;
   template <class S> S force(const S&, const S& rate, UnitMode) const {
@@ -39,7 +39,7 @@ void compile_damper(const Element& element, SystemBuilder& builder) {
 }
 
 ElementJudgement judge_damper(const Element& element, const Model&, const RunResult& run) {
-  Criterion strength; // as an [[acceptance]] entry would ask it
+  Criterion strength; // limit of the force, like an entry of [[acceptance]]
   strength.name = element.name;
   strength.channel = element.name + ".force";
   strength.within = static_cast<const OrificeDamper&>(element).strength;

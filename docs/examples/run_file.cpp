@@ -1,4 +1,4 @@
-// Runs a model file as the program `steplap` does, and tells what happened and between which values everything stayed:
+// Runs a model file like the program `steplap`, and prints the events and the extremes:
 //   run_file braked_block.toml [simulation.end=0.5 …]
 #include <steplap/catalog.h>
 #include <steplap/model_file.h>
@@ -25,7 +25,7 @@ int main(int argc, char** argv) try {
     if (event.kind != EventKind::changes_foot) std::printf("%.4f s  %s %s\n", event.t, event.element.c_str(), event.words().c_str());
   for (const ChannelRange& range : run.ranges)
     std::printf("%-24s %13.6g to %13.6g %s\n", range.channel->name.c_str(), range.low.value, range.high.value, range.channel->unit.c_str());
-} catch (const std::exception& error) { // ModelError: file, line, what would be right; NumericalFailure: time, advice
+} catch (const std::exception& error) { // ModelError: file, line and remedy; NumericalFailure: time and advice
   std::fprintf(stderr, "%s\n", error.what());
   return 1;
 }

@@ -1,6 +1,6 @@
-// A block on two feet is pushed along the floor, slides, and sticks: a model made in C++.
+// Builds a model in C++: a block on two feet is pushed along the floor, slides, and sticks.
 //
-// By hand: it sticks after v/(μg) = 0.8495 s, having slid v²/(2μg) = 1.0618 m.
+// Closed form: it sticks after v/(μg) = 0.8495 s, having slid v²/(2μg) = 1.0618 m.
 #include <steplap/elements.h>
 #include <steplap/model.h>
 #include <steplap/simulate.h>
@@ -14,11 +14,11 @@ void add_foot(Model& model, const std::string& name, double x) {
   Marker tip;
   tip.name = name;
   tip.body = "block";
-  tip.point = Vec2(x, -0.3); // m, from the block's centre
+  tip.point = Vec2(x, -0.3); // relative to the block's centre, m
   model.markers.push_back(tip);
 
   auto& foot = add_element<UnilateralContact>(model, unilateral_contact_kind(), name);
-  foot.a = name;            // presses on b, the ground, from above
+  foot.a = name;            // pressed against b, the ground, from above
   foot.stiffness = 20e6;    // N/m
   foot.damping = 50e3;      // N s/m
   foot.preload = 50 * 9.81; // N, half the weight
@@ -44,7 +44,7 @@ int main() {
   friction.contacts = {"rear foot", "front foot"};
   friction.static_friction = 0.3;
 
-  const Model whole = completed(model); // checked; throws ModelError with all that is wrong
+  const Model whole = completed(model); // checks the model; throws ModelError with all errors
   const auto system = compile(whole);
   const RunResult run = simulate(*system, start_of(whole, *system), options_of(whole));
 

@@ -76,7 +76,7 @@ const Table k_table; // constructed before main(), so threads need no synchronis
 
 // Subinterval of a gap (the interval between two neighbouring nodes). `length` is relative to [0, 1]; `begins_at_place` and
 // `ends_at_place`: its end is a node, where p = f exactly.
-struct Stretch {
+struct SubInterval {
   Values c; // Bernstein coefficients of p
   double length;
   bool begins_at_place, ends_at_place;
@@ -97,12 +97,12 @@ struct Range {
   double least, most;
 };
 
-Range range_of(const Stretch& s) {
+Range range_of(const SubInterval& s) {
   const auto [least, most] = std::minmax_element(s.c.begin(), s.c.end());
   return {*least, *most};
 }
 
-Range slopes_of(const Stretch& s) {
+Range slopes_of(const SubInterval& s) {
   Range d{s.c[1] - s.c[0], s.c[1] - s.c[0]};
   for (std::size_t i = 1; i < k_order; ++i) {
     d.least = std::min(d.least, s.c[i + 1] - s.c[i]);
@@ -111,13 +111,13 @@ Range slopes_of(const Stretch& s) {
   return {k_order * d.least / s.length, k_order * d.most / s.length};
 }
 
-std::array<Stretch, 2> halves(const Stretch& s) {
+std::array<SubInterval, 2> halves(const SubInterval& s) {
   Values right = s.c;
   const Values left = take_away(right, 0.5);
-  return {Stretch{left, 0.5 * s.length, s.begins_at_place, false}, Stretch{right, 0.5 * s.length, false, s.ends_at_place}};
+  return {SubInterval{left, 0.5 * s.length, s.begins_at_place, false}, SubInterval{right, 0.5 * s.length, false, s.ends_at_place}};
 }
 
-bool is_above(const Stretch& s, double floor, double error, int depth) {
+bool is_above(const SubInterval& s, double floor, double error, int depth) {
   if (range_of(s).least >= floor + error) return true;
   const Range slopes = slopes_of(s);
   if (s.begins_at_place && s.c[0] >= floor && slopes.least > k_tail_slope * error) return true;
@@ -133,7 +133,7 @@ bool is_above(const Stretch& s, double floor, double error, int depth) {
 // excluded.
 enum class FallState { above, falling, below, in_doubt };
 
-FallState walk(const Stretch& s, FallState so_far, double floor, double error, int depth) {
+FallState walk(const SubInterval& s, FallState so_far, double floor, double error, int depth) {
   if (so_far == FallState::below || so_far == FallState::in_doubt) return so_far;
   if (so_far == FallState::above && is_above(s, floor, error, 0)) return FallState::above;
   if (range_of(s).most <= floor - error) return FallState::below;
@@ -186,14 +186,14 @@ double PartPolynomial::at(double x) const {
 
 int PartPolynomial::first_uncertain_gap(double floor, std::size_t from, std::size_t to) const {
   for (std::size_t gap = from; gap < to; ++gap) {
-    const Stretch whole{bernstein_[gap], node(gap + 1) - node(gap), true, true};
+    const SubInterval whole{bernstein_[gap], node(gap + 1) - node(gap), true, true};
     if (!is_above(whole, floor, error_, k_depth)) return static_cast<int>(gap);
   }
   return -1;
 }
 
 bool PartPolynomial::falls_once(double floor, std::size_t gap) const {
-  const Stretch whole{bernstein_[gap], node(gap + 1) - node(gap), true, true};
+  const SubInterval whole{bernstein_[gap], node(gap + 1) - node(gap), true, true};
   return walk(whole, FallState::above, floor, error_, k_depth) != FallState::in_doubt;
 }
 

@@ -7,14 +7,14 @@ namespace steplap {
 
 namespace {
 
-struct Hidden {
+struct HiddenCharacter {
   unsigned code = 0;      // Unicode
   std::size_t length = 0; // bytes; 0: the character is visible
 };
 
 // Recognises characters that control a terminal (ASCII, U+0080 … U+009F) and those that hide or reorder text: zero-width characters
 // (U+200B … U+200D, U+2060 … U+2064, U+FEFF) and bidirectional controls (U+061C, U+200E, U+200F, U+202A … U+202E, U+2066 … U+2069).
-Hidden hidden_at(std::string_view text, std::size_t i) {
+HiddenCharacter hidden_at(std::string_view text, std::size_t i) {
   const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0U; };
   const unsigned first = byte(i);
   if (first < 0x20 || first == 0x7f) return {first, 1};
@@ -23,7 +23,7 @@ Hidden hidden_at(std::string_view text, std::size_t i) {
   const unsigned three = (first & 0x0fU) << 12U | (byte(i + 1) & 0x3fU) << 6U | (byte(i + 2) & 0x3fU);
   const bool is_hidden = (three >= 0x200b && three <= 0x200f) || (three >= 0x202a && three <= 0x202e) ||
                          (three >= 0x2060 && three <= 0x2069) || three == 0xfeff;
-  return (first & 0xf0U) == 0xe0 && is_hidden ? Hidden{three, 3} : Hidden{};
+  return (first & 0xf0U) == 0xe0 && is_hidden ? HiddenCharacter{three, 3} : HiddenCharacter{};
 }
 
 } // namespace
@@ -39,7 +39,7 @@ std::string shown(std::string_view text, bool keeps_lines) {
   result.reserve(text.size());
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    const Hidden hidden = hidden_at(text, i);
+    const HiddenCharacter hidden = hidden_at(text, i);
     if (hidden.length == 0 || (keeps_lines && c == '\n')) {
       result += c;
       continue;

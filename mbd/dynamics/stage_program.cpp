@@ -152,9 +152,9 @@ void StageProgram::record(const System& system, const State& state, const Evalua
   // Only the store keeps the list of steps. Its memory is reused for the next tape, since a run has dozens of sets of modes.
   static thread_local std::vector<TapeStep> steps;
   traced_.tape.steps.swap(steps);
-  struct GiveBack {
+  struct SwapBack {
     std::vector<TapeStep>& from;
-    ~GiveBack() { from.swap(steps); }
+    ~SwapBack() { from.swap(steps); }
   } const give_back{traced_.tape.steps};
   const bool is_traced = trace_rates(system, *layout_, state, live, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_,
                                      known ? &known->tape() : nullptr);

@@ -77,12 +77,12 @@ ut_status visit_galilean(const ut_unit*, double, const ut_unit* underlying, doub
 }
 
 // A common unit that the database lacks or interprets differently, with its meaning.
-struct SpokenUnit {
+struct CommonUnit {
   const char* name;
   const char* meaning;
   bool takes_prefix; ///< prefixes are allowed: "kNm"
 };
-constexpr SpokenUnit k_spoken_units[] = {{"deg", "degree", false},     {"rev", "2 PI radian", false}, {"mph", "mile/hour", false},
+constexpr CommonUnit k_spoken_units[] = {{"deg", "degree", false},     {"rev", "2 PI radian", false}, {"mph", "mile/hour", false},
                                          {"Nm", "newton metre", true}, {"Ns", "newton second", true}, {"Nms", "newton metre second", true}};
 
 class UnitSystem {
@@ -91,7 +91,7 @@ public:
     ut_set_error_message_handler(ut_ignore);
     system_.reset(ut_read_xml(nullptr));
     if (!system_) throw ModelError(Location{}, "the unit database of UDUNITS-2 was not found");
-    for (const SpokenUnit& spoken : k_spoken_units) {
+    for (const CommonUnit& spoken : k_spoken_units) {
       const UnitPtr unit(ut_parse(system_.get(), spoken.meaning, UT_ASCII));
       if (!unit) continue;
       if (spoken.takes_prefix) ut_map_symbol_to_unit(spoken.name, UT_ASCII, unit.get());
@@ -184,46 +184,46 @@ std::string example(const std::string& unit) { return unit.empty() || unit == "*
 
 // Conversion of a frequent unit without the database, since reading the database takes longer than the rest of the program's start. The
 // results are bit-identical to those of the database, as a test checks.
-struct UsualUnit {
+struct FrequentUnit {
   const char* given;
   const char* wanted;
   double factor;
 };
-constexpr UsualUnit k_usual_units[] = {{"mm", "m", 0.001},
-                                       {"m", "m", 1.0},
-                                       {"cm", "m", 0.01},
-                                       {"t", "kg", 1000.0},
-                                       {"kg", "kg", 1.0},
-                                       {"s", "s", 1.0},
-                                       {"ms", "s", 0.001},
-                                       {"km/h", "m/s", 1000.0 / 3600.0},
-                                       {"m/s", "m/s", 1.0},
-                                       {"gravity", "m/s^2", 9.80665},
-                                       {"N", "N", 1.0},
-                                       {"kN", "N", 1000.0},
-                                       {"MN", "N", 1e6},
-                                       {"N/m", "N/m", 1.0},
-                                       {"kN/m", "N/m", 1000.0},
-                                       {"MN/m", "N/m", 1e6},
-                                       {"GN/m", "N/m", 1e9},
-                                       {"N s/m", "N s/m", 1.0},
-                                       {"kN s/m", "N s/m", 1000.0},
-                                       {"MPa", "Pa", 1e6},
-                                       {"kPa", "Pa", 1000.0},
-                                       {"Pa", "Pa", 1.0},
-                                       {"rad/s", "rad/s", 1.0},
-                                       {"Hz", "Hz", 1.0},
-                                       {"gravity", "*", 9.80665},
-                                       {"m/s^2", "*", 1.0},
-                                       {"m/s", "*", 1.0},
-                                       {"km/h", "*", 1000.0 / 3600.0},
-                                       {"mm", "*", 0.001},
-                                       {"m", "*", 1.0},
-                                       {"kN", "*", 1000.0},
-                                       {"N", "*", 1.0}};
+constexpr FrequentUnit k_usual_units[] = {{"mm", "m", 0.001},
+                                          {"m", "m", 1.0},
+                                          {"cm", "m", 0.01},
+                                          {"t", "kg", 1000.0},
+                                          {"kg", "kg", 1.0},
+                                          {"s", "s", 1.0},
+                                          {"ms", "s", 0.001},
+                                          {"km/h", "m/s", 1000.0 / 3600.0},
+                                          {"m/s", "m/s", 1.0},
+                                          {"gravity", "m/s^2", 9.80665},
+                                          {"N", "N", 1.0},
+                                          {"kN", "N", 1000.0},
+                                          {"MN", "N", 1e6},
+                                          {"N/m", "N/m", 1.0},
+                                          {"kN/m", "N/m", 1000.0},
+                                          {"MN/m", "N/m", 1e6},
+                                          {"GN/m", "N/m", 1e9},
+                                          {"N s/m", "N s/m", 1.0},
+                                          {"kN s/m", "N s/m", 1000.0},
+                                          {"MPa", "Pa", 1e6},
+                                          {"kPa", "Pa", 1000.0},
+                                          {"Pa", "Pa", 1.0},
+                                          {"rad/s", "rad/s", 1.0},
+                                          {"Hz", "Hz", 1.0},
+                                          {"gravity", "*", 9.80665},
+                                          {"m/s^2", "*", 1.0},
+                                          {"m/s", "*", 1.0},
+                                          {"km/h", "*", 1000.0 / 3600.0},
+                                          {"mm", "*", 0.001},
+                                          {"m", "*", 1.0},
+                                          {"kN", "*", 1000.0},
+                                          {"N", "*", 1.0}};
 
-const UsualUnit* find_usual(const std::string& given, const std::string& wanted) {
-  for (const UsualUnit& usual : k_usual_units)
+const FrequentUnit* find_usual(const std::string& given, const std::string& wanted) {
+  for (const FrequentUnit& usual : k_usual_units)
     if (given == usual.given && wanted == usual.wanted) return &usual;
   return nullptr;
 }
@@ -266,7 +266,7 @@ std::optional<std::array<double, 3>> powers_in(const std::string& original) {
 
 std::vector<std::pair<std::string, std::string>> usual_units() {
   std::vector<std::pair<std::string, std::string>> pairs;
-  for (const UsualUnit& usual : k_usual_units) pairs.emplace_back(usual.given, usual.wanted);
+  for (const FrequentUnit& usual : k_usual_units) pairs.emplace_back(usual.given, usual.wanted);
   return pairs;
 }
 
@@ -282,7 +282,7 @@ Quantity parse_quantity(const std::string& original, const std::string& unit, Un
   const std::string given = trimmed(std::string(rest, end));
   if (given.empty()) return without_unit(number, text, unit);
 
-  if (const UsualUnit* usual = source == UnitSource::usual_first ? find_usual(given, unit) : nullptr) {
+  if (const FrequentUnit* usual = source == UnitSource::usual_first ? find_usual(given, unit) : nullptr) {
     const double value = usual->factor * number;
     return std::isfinite(value) ? Quantity{value, ""} : Quantity{0.0, "'" + text + "' is not finite"};
   }

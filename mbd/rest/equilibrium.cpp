@@ -53,9 +53,9 @@ struct Slip {
 };
 
 // Failure of the search because friction between touching bodies gave way.
-class SlidAway : public ElementFailure {
+class SlidingFailure : public ElementFailure {
 public:
-  SlidAway(const std::string& message, std::vector<std::string> names, const Slip& slip)
+  SlidingFailure(const std::string& message, std::vector<std::string> names, const Slip& slip)
       : ElementFailure(message, std::move(names)), friction_(slip.friction), from_(slip.from) {}
   [[nodiscard]] int friction() const { return friction_; }
   [[nodiscard]] double from() const { return from_; } ///< value of its row when it first gave way
@@ -109,7 +109,7 @@ private:
     rest.bases = held_bases(rest);
     state_ = rest;
     // A body that slid away did not stand, even if it came to rest somewhere.
-    if (const auto* const slid = dynamic_cast<const SlidAway*>(&none);
+    if (const auto* const slid = dynamic_cast<const SlidingFailure*>(&none);
         slid && std::abs(row_value(slid->friction()) - slid->from()) > k_stands * length_)
       throw ElementFailure(none.what(), none.elements());
     result_ = {};
@@ -411,8 +411,8 @@ private:
   [[noreturn]] void fail_sliding(const Slip& slip) const {
     const RowSpec& row = *system_.frictions[slip.friction].friction->rows(state_.friction[slip.friction]);
     const int body = row.a == k_ground ? row.b : row.a;
-    throw SlidAway("no static equilibrium: " + overload_text(slip) + ", and '" + system_.bodies[body].name + "' slides",
-                   {name_of(slip.friction), system_.bodies[body].name}, slip);
+    throw SlidingFailure("no static equilibrium: " + overload_text(slip) + ", and '" + system_.bodies[body].name + "' slides",
+                         {name_of(slip.friction), system_.bodies[body].name}, slip);
   }
   [[noreturn]] void fail(const Descent& descent, DescentEnd end) const {
     const MotionPart& part = descent.runaway();

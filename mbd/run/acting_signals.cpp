@@ -51,7 +51,7 @@ public:
           end(element, "", t, cut);
           now_.erase({element, ""});
         } else {
-          now_.try_emplace({element, ""}, Now{&use(element, "", ""), t});
+          now_.try_emplace({element, ""}, ActingUse{&use(element, "", ""), t});
         }
       }
     }
@@ -83,7 +83,7 @@ public:
 
 private:
   using Place = std::pair<std::size_t, std::string>; // element index and field name
-  struct Now {
+  struct ActingUse {
     ActingSignal* use = nullptr;
     double since = 0.0;
   };
@@ -132,7 +132,7 @@ private:
   std::unordered_map<std::string, std::size_t> index_; ///< index of each element by name
   std::vector<bool> acts_;
   std::map<std::pair<std::size_t, std::pair<std::string, std::string>>, ActingSignal> uses_; ///< key: element, field and signal
-  std::map<Place, Now> now_;
+  std::map<Place, ActingUse> now_;
 };
 
 } // namespace

@@ -43,9 +43,9 @@ constexpr double k_behind = 1e4; // last sample, in run lengths
 constexpr double k_alike = 1e-9; // differences below this fraction of the largest value are rounding
 
 // Computes the force of an element, or the rate of a state, at any time, with the bodies in their final state.
-class AtOtherTimes {
+class LaterEvaluation {
 public:
-  AtOtherTimes(const Model& model, const System& system, const State& state, const std::string& element)
+  LaterEvaluation(const Model& model, const System& system, const State& state, const std::string& element)
       : system_(system), state_(state), dynamics_(system) {
     for (const Channel& channel : system.channels)
       if (channel.name.starts_with(element + ".") && channel.codes.empty() && !channel.is_on_request) channels_.push_back(&channel);
@@ -101,7 +101,7 @@ bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
 double golden(int i) { return std::fmod(i * 0.6180339887498949, 1.0); }
 
 // First sample after the end of a run at which a formula has an effect that the run did not show.
-struct LateEffect {
+struct LaterBehaviour {
   double t = 0.0;        ///< s
   bool is_first = false; ///< true: the formula is constant before t; false: its magnitude exceeds all earlier ones
 };
@@ -124,7 +124,7 @@ private:
   std::vector<double> largest_;
 };
 
-std::optional<LateEffect> late_look(AtOtherTimes& at, double end) {
+std::optional<LaterBehaviour> late_look(LaterEvaluation& at, double end) {
   const std::vector<double> first = at.values(0.0);
   bool depends = false;
   LargestMagnitudes within, behind, far_behind;
@@ -134,11 +134,11 @@ std::optional<LateEffect> late_look(AtOtherTimes& at, double end) {
     depends = depends || !are_alike(values, first);
     within.add(values);
   }
-  std::optional<LateEffect> begins, grows;
+  std::optional<LaterBehaviour> begins, grows;
   const auto look = [&](double t) {
     const std::vector<double> values = at.values(t);
-    if (!depends && !begins && !are_alike(values, first)) begins = LateEffect{t, true};
-    if (depends && !grows && within.are_exceeded_by(values)) grows = LateEffect{t, false};
+    if (!depends && !begins && !are_alike(values, first)) begins = LaterBehaviour{t, true};
+    if (depends && !grows && within.are_exceeded_by(values)) grows = LaterBehaviour{t, false};
     (t > k_far * end ? far_behind : behind).add(values);
   };
   for (int i = 1; i <= k_samples; ++i) look(end * (1.0 + (k_near - 1.0) * (i - golden(i)) / k_samples));
@@ -157,8 +157,8 @@ std::vector<Finding> late_formulas(const LoadedModel& loaded, const RunResult& r
   for (const ElementEntry& entry : loaded.model.elements) {
     if (!uses_time(entry)) continue;
     try {
-      AtOtherTimes at(loaded.model, *loaded.system, result.final_state, entry.element->name);
-      const std::optional<LateEffect> late = late_look(at, end);
+      LaterEvaluation at(loaded.model, *loaded.system, result.final_state, entry.element->name);
+      const std::optional<LaterBehaviour> late = late_look(at, end);
       if (!late) continue;
       const std::string what = late->is_first ? "begins to depend on the time by" : "is larger than in the whole run at";
       findings.push_back({late->is_first ? "load_behind_end" : "load_still_grows", FindingLevel::warning,

@@ -140,7 +140,7 @@ Json global_error_json(const Report& report) {
 }
 
 // Stores each text once, and for every channel the index of its text, because there are only few different texts.
-class Meanings {
+class MeaningIndex {
 public:
   [[nodiscard]] std::size_t place_of(const Channel& channel) {
     std::string text = channel.doc;
@@ -157,7 +157,7 @@ private:
   Json list_ = Json::array();
 };
 
-Json extremes_json(const Report& report, Meanings& meanings) {
+Json extremes_json(const Report& report, MeaningIndex& meanings) {
   constexpr std::size_t k_most_entries = 16;
   Json json = object_with_room(report.ranges().size());
   const auto time = [](const Extreme& extreme) { return std::isnan(extreme.value) ? Json() : Json(extreme.t); };
@@ -408,7 +408,7 @@ OrderedJson summary_document(const Report& report, ShownDigits digits) {
     for (std::string& effect : effects_of(loaded.model)) left_out.push_back(std::move(effect));
   if (!left_out.empty()) json["left_out"] = left_out;
   if (report.second_opinion) json["second_opinion"] = second_opinion_json(*report.second_opinion);
-  Meanings meanings;
+  MeaningIndex meanings;
   json["extremes"] = extremes_json(report, meanings);
   json["meanings"] = meanings.list();
   json["final_state"] = state_json(*loaded.system, run.result.final_state, report);

@@ -63,7 +63,7 @@ public:
     ++runs_;
     const Judgement judgement = judge(model_, system_, other, "");
     for (const CriterionResult& c : judgement.criteria)
-      for (Met& met : met_)
+      for (MetCriterion& met : met_)
         if (c.name == met.name && c.text == met.text && c.outcome != Verdict::hold && c.outcome != Verdict::open) {
           ++met.contradictions;
           met.where = c.where + (c.t ? "' at t = " + number_text(*c.t) + " s" : "'");
@@ -72,19 +72,19 @@ public:
 
   /// Returns a criterion that all runs of the other method violate; "" if there is none.
   [[nodiscard]] std::string contradiction() const {
-    for (const Met& met : met_)
+    for (const MetCriterion& met : met_)
       if (runs_ > 0 && met.contradictions == runs_) return "'" + met.name + "', " + met.text + ": not met by '" + met.where;
     return "";
   }
 
 private:
-  struct Met {
+  struct MetCriterion {
     std::string name, text, where;
     int contradictions = 0;
   };
   const Model& model_;
   const System& system_;
-  std::vector<Met> met_;
+  std::vector<MetCriterion> met_;
   int runs_ = 0;
 };
 

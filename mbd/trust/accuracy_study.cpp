@@ -89,7 +89,7 @@ private:
   }
 
   // Settings of one integrator, from the coarsest to the finest, and the results so far.
-  struct Climb {
+  struct SettingSequence {
     std::vector<std::size_t> rungs; ///< indices in AccuracyOptions::ladder
     std::size_t next = 0;
     double last_cost = 0.0, last_value = 0.0; ///< CPU time of all runs at the last setting, s, and its tolerance or step
@@ -99,22 +99,22 @@ private:
 
   // Returns the predicted CPU time of the next setting, s, proportional to 1/step or tolerance^(−k_cost_power). The prediction is 0 for the
   // first setting, so that every integrator is measured at least once.
-  [[nodiscard]] double predicted(const Climb& climb) const {
+  [[nodiscard]] double predicted(const SettingSequence& climb) const {
     const MethodSetting& setting = options_.ladder[climb.rungs[climb.next]];
     if (climb.last_cost == 0.0) return 0.0;
     const double finer = climb.last_value / setting.value;
     return climb.last_cost * (setting.is_step ? finer : portable::pow(finer, k_cost_power));
   }
 
-  [[nodiscard]] std::vector<Climb> climbs() const {
-    std::map<std::string, Climb> by_name;
+  [[nodiscard]] std::vector<SettingSequence> climbs() const {
+    std::map<std::string, SettingSequence> by_name;
     std::vector<std::string> order;
     for (std::size_t i = 0; i < options_.ladder.size(); ++i) {
-      Climb& climb = by_name[options_.ladder[i].integrator];
+      SettingSequence& climb = by_name[options_.ladder[i].integrator];
       if (climb.rungs.empty()) order.push_back(options_.ladder[i].integrator);
       climb.rungs.push_back(i);
     }
-    std::vector<Climb> list;
+    std::vector<SettingSequence> list;
     for (const std::string& name : order) {
       std::stable_sort(by_name[name].rungs.begin(), by_name[name].rungs.end(),
                        [this](std::size_t a, std::size_t b) { return options_.ladder[a].value > options_.ladder[b].value; });
@@ -127,10 +127,10 @@ private:
   void climb() {
     study_.budget = options_.budget;
     study_.entries.resize(options_.ladder.size());
-    std::vector<Climb> list = climbs();
+    std::vector<SettingSequence> list = climbs();
     for (;;) {
-      Climb* cheapest = nullptr;
-      for (Climb& climb : list)
+      SettingSequence* cheapest = nullptr;
+      for (SettingSequence& climb : list)
         if (!climb.is_over() && (!cheapest || predicted(climb) < predicted(*cheapest))) cheapest = &climb;
       if (!cheapest) return;
       const std::size_t rung = cheapest->rungs[cheapest->next];

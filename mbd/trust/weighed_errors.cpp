@@ -62,16 +62,16 @@ std::string doubt_about(const CriterionResult& c, const CriterionResult& finer) 
 // --- slips in one of two runs only
 
 // The earliest slip of an element that slips in only one of the two runs.
-struct LoneSlip {
+struct UnmatchedSlip {
   std::string element;
   double t = 0.0;
   bool is_mine = true;
 };
 
-std::vector<LoneSlip> lone_slips(const RunResult& run, const RunResult& finer) {
-  std::vector<LoneSlip> found;
-  const auto add = [&found](const LoneSlip& slip) {
-    const auto same = std::find_if(found.begin(), found.end(), [&](const LoneSlip& other) { return other.element == slip.element; });
+std::vector<UnmatchedSlip> lone_slips(const RunResult& run, const RunResult& finer) {
+  std::vector<UnmatchedSlip> found;
+  const auto add = [&found](const UnmatchedSlip& slip) {
+    const auto same = std::find_if(found.begin(), found.end(), [&](const UnmatchedSlip& other) { return other.element == slip.element; });
     if (same == found.end()) found.push_back(slip);
     else if (slip.t < same->t) *same = slip;
   };
@@ -125,7 +125,7 @@ bool changes_verdict(const std::string& element, const Judgement& judgement, con
 // right.
 std::string doubt_about_slips(const Judgement& judgement, const Judgement& finer, const System& system, const RunResult& run,
                               const GlobalErrorEstimate& estimate) {
-  for (const LoneSlip& slip : lone_slips(run, estimate.finest)) {
+  for (const UnmatchedSlip& slip : lone_slips(run, estimate.finest)) {
     if (!changes_verdict(slip.element, judgement, finer) && !changes_slide(slip.element, system, run, estimate.finest)) continue;
     char t[32];
     std::snprintf(t, sizeof t, "%.6g", slip.t);

@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int k_most_fragments = 1;
+constexpr int k_most_fragments = 0;
 
 const std::vector<std::string> k_starts = {"Of ", "What ", "That which ", "The same as "};
 

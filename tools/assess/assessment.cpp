@@ -17,8 +17,8 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_same_margin = 0.02; // permitted difference between a run with error estimate and the same run among the samples
-constexpr double k_still = 1e-3;       // m/s; slower bodies are regarded as at rest before the next event
+constexpr double k_same_margin = 0.02; // largest relative difference between the margins of the two computations of a voyage
+constexpr double k_still = 1e-3;       // m/s; a body that is slower at the end of an event counts as at rest
 
 void stop_if_asked(const AssessmentOptions& options, const std::string& where) {
   if (!options.stop) return;
@@ -86,7 +86,8 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
       if (const std::string unseen = check_gravity(record, model); !unseen.empty()) a.assumptions.push_back(unseen);
 }
 
-// Evaluates shared frictions in an event after all models. Discards the traces, which would be large for a whole voyage.
+// Evaluates the shared frictions in event `e`, after it was simulated in all models. Deletes the friction histories, which would be too
+// large for a whole voyage.
 void pass_planes(SharedFrictions& shared, std::size_t e, Assessment& a) {
   std::vector<const std::vector<SampledFriction>*> traces;
   std::vector<const DriveHistory*> histories;
@@ -100,7 +101,7 @@ void pass_planes(SharedFrictions& shared, std::size_t e, Assessment& a) {
 }
 
 void pass_events(const AssessmentOptions& options, Assessment& a) {
-  std::vector<Traveller> travellers;
+  std::vector<VoyageModel> travellers;
   for (const DrivenModel& model : a.models) travellers.emplace_back(model);
   SharedFrictions shared(a.shared);
   long done = 0;
@@ -110,8 +111,8 @@ void pass_events(const AssessmentOptions& options, Assessment& a) {
       if (options.progress) options.progress("events", done++, static_cast<long>(a.events.size() * a.models.size()));
       Passage passage = travellers[m].pass(a.histories[m][e], options.estimating);
       passage.event = e, passage.model = m;
-      if (passage.still_moving > k_still && !a.histories[m][e].goes_on)
-        passage.findings.push_back("The machine still moves at " + rounded_text(passage.still_moving, 2) +
+      if (passage.final_speed > k_still && !a.histories[m][e].goes_on)
+        passage.findings.push_back("The machine still moves at " + rounded_text(passage.final_speed, 2) +
                                    " m/s when the event is over: raise 'settle' of [[recorder]] if the next event begins from rest.");
       worsen(a.summary, summary_of(passage, e + 1, a.models[m].name));
       a.events[e].passages.push_back(std::move(passage));
@@ -120,7 +121,7 @@ void pass_events(const AssessmentOptions& options, Assessment& a) {
   }
 }
 
-// Repeats the voyage by the method used for samples, as a check.
+// Repeats the voyage by the method used for samples. If the results differ, the assessment cannot be trusted.
 void check_against_samples(Assessment& a) {
   const VoyageSummary twin =
       a.by_samples ? *a.by_samples : voyage_with(a.models, a.histories, *a.uncertain, a.uncertain->nominal(), a.shared).summary;
@@ -170,7 +171,7 @@ void assume(Assessment& a) {
   for (const DrivenModel& model : a.models)
     for (const std::string& limit : model.assumed_limits)
       a.assumptions.push_back("'" + model.name + "': the limit '" + limit + "' is assumed.");
-  constexpr double k_unlikely = 0.01; // probability in each tail
+  constexpr double k_unlikely = 0.01; // probability in each tail; nominal values beyond this quantile are reported
   for (std::size_t i = 0; i < a.uncertain->values().size(); ++i) {
     const UncertainValue& value = a.uncertain->values()[i];
     if (value.nominal >= a.uncertain->quantile(i, k_unlikely) && value.nominal <= a.uncertain->quantile(i, 1.0 - k_unlikely)) continue;
@@ -225,15 +226,15 @@ Assessment assess(const std::vector<std::string>& records, const std::vector<std
   const StopScope stopping(options.stop);
   Assessment a;
   read_inputs(records, models, options, a);
-  find_unseen(options, a);
+  find_gaps_before_runs(options, a);
   list_events(a);
   find_events_that_matter(options, a);
   find_rounded_tops(a.records, a.missing);
   pass_events(options, a);
   sample(options, a);
-  find_undecided(options, a);
+  check_bandwidth_and_position(options, a);
   decide(a);
-  find_what_it_hangs_on(options, a);
+  find_dependence(options, a);
   assume(a);
   return a;
 }

@@ -1,5 +1,5 @@
-// Computes a transport assessment from shock records and models: simulates every event of the voyage in every model in order of time,
-// repeats the voyage with sampled uncertain values, and applies the criteria. This is `steplap assess` without its console.
+// Makes a transport assessment from shock records and models: simulates all events of the voyage in order of time in every model, repeats
+// the voyage with sampled uncertain values, and applies the criteria. This is `steplap assess` without its console.
 #pragma once
 
 #include "tools/assess/coverage.h"
@@ -19,24 +19,23 @@ namespace steplap::assess {
 struct AssessmentOptions {
   EventReading reading;
   std::vector<std::string> overrides;     ///< "path=value", applied to every model
-  std::vector<Evidence> accepted;         ///< missing evidence that the user accepts
-  Shipment shipment;                      ///< papers, for the sheet that is signed
+  std::vector<Evidence> accepted;         ///< kinds of missing evidence that the user accepts
+  Shipment shipment;                      ///< shipping data for the report to be signed
   std::optional<Voyage> voyage;           ///< begin and end of the transport
-  double budget = 60.0;                   ///< s of computing time per started day of record that the search for a lower event threshold may
-                                          ///< use
+  double budget = 60.0;                   ///< computing time, s per started day of record, for the search of a lower event threshold
   std::string criteria = "acceptance-3g"; ///< file name or preset
   Estimating estimating = Estimating::cheap;
   SamplingOptions sampling;
   std::function<void(const std::string& what, long done, long all)> progress;
-  std::function<std::string()> stop; ///< polled during the work; a text other than "" stops it and becomes the reason
+  std::function<std::string()> stop; ///< called repeatedly; a non-empty text stops the assessment and becomes its reason
 };
 
-/// A shock event, with its results in all models. Events are in order of time over all records.
+/// A shock event with its results in all models. Events of all records are ordered by time.
 struct VoyageEvent {
-  std::size_t record = 0, event = 0; ///< indices
+  std::size_t record = 0, event = 0; ///< indices of the record, and of the event in it
   std::vector<Passage> passages;     ///< one for each model
-  std::vector<Probability> slip;     ///< probability of slip for each model; `runs` is 0 without samples
-  std::vector<SharedPassage> shared; ///< one for each friction shared by models of two planes
+  std::vector<Probability> slip;     ///< index of the record, and of the event in it
+  std::vector<SharedPassage> shared; ///< probability of slip in each model; `runs` is 0 if no samples were simulated
 };
 
 /// A criterion with its outcome and the explanation.
@@ -44,7 +43,7 @@ struct Reason {
   std::string criterion, text, source;
   Decision outcome = Decision::energise;
   std::vector<std::string> tests;
-  double excess = 0.0; ///< demand on the machine over the permitted value; 0: unknown
+  double excess = 0.0; ///< demand divided by the permitted value; 0 if unknown
 };
 
 /// All results of an assessment.
@@ -53,7 +52,7 @@ struct Assessment {
   std::optional<Voyage> voyage;
   std::vector<RecordEvents> records;
   std::vector<DrivenModel> models;
-  std::vector<SharedFriction> shared; ///< friction elements that models of two planes have in common
+  std::vector<SharedFriction> shared; ///< friction contacts common to the models of two planes
   std::vector<VoyageEvent> events;
   std::vector<std::vector<DriveHistory>> histories; ///< drive histories, indexed by model and event
   std::unique_ptr<UncertainValues> uncertain;
@@ -64,13 +63,13 @@ struct Assessment {
   DecisionCriteria criteria;
   Decision decision = Decision::open;
   std::string reason;
-  std::vector<Reason> reasons; ///< all criteria, most severe outcome first, and of equal outcomes the largest excess
+  std::vector<Reason> reasons; ///< all criteria; the most severe outcome first, and for equal outcomes the largest excess
   std::vector<std::string> hangs_on, assumptions;
-  std::vector<std::string> tests;       ///< those that would show the damage, then the usual ones
-  std::vector<MissingEvidence> missing; ///< of single records and of all records together
+  std::vector<std::string> tests;       ///< tests to be made on the machine: those that would reveal the damage, then the usual ones
+  std::vector<MissingEvidence> missing; ///< missing evidence of single records and of all records together
   std::vector<Evidence> accepted;
-  std::optional<VoyageSummary> by_samples; ///< result with nominal values computed by VoyageRunner, if it was run
-  int halvings = 0;                        ///< number of halvings of the event threshold until the decision stayed the same
+  std::optional<VoyageSummary> by_samples; ///< summary with nominal values from the method used for samples, if it was run
+  int halvings = 0;                        ///< number of halvings of the event threshold after which the decision no longer changed
 
   /// Returns true if the user accepts that this evidence is missing.
   [[nodiscard]] bool is_accepted(Evidence item) const;
@@ -82,14 +81,14 @@ struct Assessment {
 
 /// Applies the criteria and fills decision, reason, reasons and tests.
 void decide(Assessment& assessment);
-/// Returns the most severe outcome of all criteria for this summary, with the records of the assessment. Probabilities concern all samples
-/// together and are not judged here.
+/// Returns the most severe outcome of all criteria for `summary`, including missing evidence of the records. Criteria on probabilities are
+/// excluded, because they concern all samples together.
 [[nodiscard]] Decision decision_of(const Assessment& assessment, const VoyageSummary& summary);
-/// As decision_of(), but without regard to missing evidence.
+/// As decision_of(), but ignoring missing evidence.
 [[nodiscard]] Decision decision_by_criteria(const Assessment& assessment, const VoyageSummary& summary);
-/// Fills events and histories from the events of the records.
+/// Fills `events` and `histories` from the events of the records.
 void list_events(Assessment& assessment);
-/// Simulates the assessment's events with sampled values. `suffix` is added to the name of the sample file.
+/// Simulates all events with sampled values. `suffix` is appended to the name of the sample file.
 [[nodiscard]] std::vector<VoyageSample> samples_of(const AssessmentOptions& options, const Assessment& assessment,
                                                    const std::string& suffix);
 

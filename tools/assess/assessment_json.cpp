@@ -18,7 +18,7 @@ namespace steplap::assess {
 namespace {
 
 using Json = OrderedJson;
-constexpr std::size_t k_figure_points = 600; // points of a curve, enough for the width of a page
+constexpr std::size_t k_figure_points = 600; // largest number of points of a curve, which suffices for the width of a page
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
@@ -121,7 +121,7 @@ Json models(const Assessment& a) {
   return all;
 }
 
-// Returns the curves of an event, thinned. The sample furthest from zero is kept from each interval, so that peaks remain.
+// Returns the curves of an event. Of each interval only the sample with the largest magnitude is kept, so that peaks remain.
 Json figure(const RecordEvents& record, const Window& window) {
   const std::size_t count = window.times.size(), stride = std::max<std::size_t>(1, (count + k_figure_points - 1) / k_figure_points);
   const std::string axes = record.axes();
@@ -154,7 +154,7 @@ Json limits(const std::vector<LimitPassage>& all, const char* value_name) {
   return list;
 }
 
-// `begin` is that of the event, s of the record.
+// Returns the results of one event in one model. `begin` is the event's begin in the record, s.
 Json passage(const Passage& p, const Assessment& a, double begin, const Probability* slip) {
   Json joints = Json::array(), feet = Json::array(), poses = Json::object();
   for (const BodyPose& pose : p.poses) append(poses, pose.body) = {pose.x, pose.y, pose.angle};
@@ -185,7 +185,7 @@ Json passage(const Passage& p, const Assessment& a, double begin, const Probabil
           {"findings", p.findings},
           {"worst_time", p.worst_instant ? Json(begin + *p.worst_instant) : Json(nullptr)},
           {"poses", poses},
-          {"still_moving", p.still_moving},
+          {"still_moving", p.final_speed},
           {"slip_probability", slip ? probability(*slip) : Json(nullptr)}};
 }
 
@@ -296,7 +296,7 @@ Json reasons(const Assessment& a) {
   return all;
 }
 
-// Returns the papers as given; "" for missing entries.
+// Returns the shipping data as given; "" for missing entries.
 Json shipment(const Shipment& s) {
   Json recorders = Json::array(), handovers = Json::array();
   for (const ShippedRecorder& r : s.recorders)

@@ -42,7 +42,7 @@ std::vector<std::string> assumed_limits(const Model& given) {
 }
 
 bool is_assumed(const std::vector<std::string>& assumed, const Model& model, const Judgement& judgement, std::size_t index) {
-  // The criteria of the model follow those of elements, which may have the same name.
+  // Criteria of elements come first and may have the same name, so only the last ones, those of the model, are compared.
   return index + model.criteria.size() >= judgement.criteria.size() &&
          std::find(assumed.begin(), assumed.end(), judgement.criteria[index].name) != assumed.end();
 }

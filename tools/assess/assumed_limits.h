@@ -1,4 +1,5 @@
-// Finds the limits of a model that its author assumed. A decision to return the machine needs a limit that is specified or measured.
+// Finds limits of a model that are marked as assumed. They alone cannot lead to the decision "return", which requires a specified or
+// measured limit.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -9,8 +10,8 @@
 
 namespace steplap::assess {
 
-/// Returns the names of the [[acceptance]] tables of a model, as given, whose limit is assumed: by their `source`, or by that of an
-/// [[uncertain]] parameter on which the limit depends.
+/// Returns the names of the [[acceptance]] tables of a model whose limit is assumed according to their `source`, or to the `source` of an
+/// [[uncertain]] parameter used in the limit. `given`: the model before completion.
 [[nodiscard]] std::vector<std::string> assumed_limits(const Model& given);
 
 /// Returns true if criterion `index` of a judgement of `model` is an [[acceptance]] with one of the names in `assumed`.

@@ -16,11 +16,11 @@ namespace {
 
 constexpr std::size_t k_axes = 3;
 constexpr const char* k_letters = "xyz";
-constexpr int k_intervals = 200;  // samples per pulse; linear interpolation of a half sine then has an error of 3e-5 of its peak
-constexpr double k_noticed = 0.1; // of the threshold; smaller shocks move nothing that survived the journey
-constexpr double k_differs = 0.2; // permitted relative difference between the listed velocity change and that of the pulse
+constexpr int k_intervals = 200;  // samples per pulse; the error of linear interpolation of a half sine is then 3e-5 of the peak
+constexpr double k_noticed = 0.1; // peaks below this fraction of the threshold are ignored
+constexpr double k_differs = 0.2; // largest relative difference between the velocity change in the list and that of the pulse
 
-using Peaks = std::array<double, k_axes>; // m/s²
+using Peaks = std::array<double, k_axes>; // peak acceleration along each axis, m/s²
 
 struct Shape {
   PulseShape shape;
@@ -58,7 +58,7 @@ public:
   }
 
   void make() {
-    std::array<double, k_axes> best{}; // largest peaks below the threshold
+    std::array<double, k_axes> best{}; // largest peak below the threshold along each axis
     std::array<const PeakEntry*, k_axes> quiet{};
     std::vector<const PeakEntry*> chosen;
     for (const PeakEntry& entry : record_.recording.peaks) {
@@ -74,13 +74,13 @@ public:
     for (std::size_t i = 0; i < k_axes; ++i)
       if (quiet[i] && best[i] >= least && std::find(chosen.begin(), chosen.end(), quiet[i]) == chosen.end()) chosen.push_back(quiet[i]);
     std::stable_sort(chosen.begin(), chosen.end(),
-                     [](const PeakEntry* a, const PeakEntry* b) { return a->line < b->line; }); // in the order of the list
+                     [](const PeakEntry* a, const PeakEntry* b) { return a->line < b->line; }); // restores the order of the list
     for (const PeakEntry* const entry : chosen) add(*entry);
     say();
   }
 
 private:
-  // Returns the index of the axis from which gravity is subtracted.
+  // Returns the index of the axis that includes gravity; nothing if none does. Throws FileError if this is unknown.
   static std::optional<std::size_t> gravity_axis(const EventReading& reading, const RecordEvents& record) {
     if (!reading.gravity)
       throw FileError(record.file,
@@ -95,15 +95,15 @@ private:
     return axis;
   }
 
-  // Returns the peaks along the axes without gravity; NaN if missing.
+  // Returns the peak acceleration along each axis without gravity, m/s²; NaN if missing.
   Peaks peaks_of(const PeakEntry& entry) const {
     Peaks a{};
     bool has_axis = false;
     for (std::size_t i = 0; i < k_axes; ++i)
       if (std::isfinite(entry.axis[i])) a[i] = entry.axis[i], has_axis = true;
     if (has_axis) {
-      // A recorder at rest reads 1 g along this axis. In a list without signs, a smaller or opposite peak cannot be distinguished from
-      // rest.
+      // The reading at rest is 1 g along this axis. Peaks without sign that are below 1 g or opposite to gravity cannot be distinguished
+      // from it and give zero.
       if (gravity_) a[*gravity_] = std::copysign(std::max(0.0, std::abs(a[*gravity_]) - k_gravity), a[*gravity_]);
       return a;
     }
@@ -140,7 +140,7 @@ private:
   void add(const PeakEntry& entry) {
     const Peaks a = peaks_of(entry);
     const double length = length_of(entry, a);
-    // All combinations of signs that are possible; the first axis changes fastest.
+    // Adds one pulse for each combination of unknown signs.
     std::vector<std::size_t> turned;
     for (std::size_t i = 0; i < k_axes; ++i)
       if (a[i] != 0.0 && !is_signed_) turned.push_back(i);

@@ -9,13 +9,15 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr std::size_t k_many = 100;            // rows; shorter sequences may be equal by chance if the resolution is coarse
-constexpr std::size_t k_most_of_rest = 100000; // rows
-constexpr double k_long = 0.2;                 // s
-constexpr double k_moves = 0.05 * k_gravity;   // m/s²; threshold for motion of another axis
-constexpr double k_coarse = 20.0;              // steps of the converter; if another axis moves this far, this axis must change by at least
-                                               // one step
-constexpr double k_few_steps = 4.0, k_coupling = 0.05; // fraction of another axis' motion that an axis reads because of misalignment
+// smallest number of rows to recognise a constant axis; with a coarse resolution fewer may be equal by chance
+constexpr std::size_t k_many = 100;
+constexpr std::size_t k_most_of_rest = 100000; // largest number of rows used for the reading at rest
+constexpr double k_long = 0.2;                 // shortest constant interval, s
+constexpr double k_moves = 0.05 * k_gravity;   // smallest range of another axis that counts as motion, m/s²
+// an axis that stays constant while another changes by this many of its converter's steps does not measure
+constexpr double k_coarse = 20.0;
+// steps; smallest fraction of another axis' motion that misalignment makes an axis read
+constexpr double k_few_steps = 4.0, k_coupling = 0.05;
 
 } // namespace
 
@@ -77,17 +79,17 @@ double AxisWatch::others_range(std::size_t axis) const {
   return range;
 }
 
-std::optional<AxisWatch::Stuck> AxisWatch::stuck(std::size_t index) const {
+std::optional<AxisWatch::DeadInterval> AxisWatch::stuck(std::size_t index) const {
   const Axis& axis = axes_[index];
-  if (axis.changes == 0) return rows_ >= k_many ? std::optional(Stuck{axis.now.from, axis.now.to}) : std::nullopt;
-  if (axis.moved.others >= std::max(k_moves, k_coarse * axis.step)) return Stuck{axis.moved.from, axis.moved.to};
+  if (axis.changes == 0) return rows_ >= k_many ? std::optional(DeadInterval{axis.now.from, axis.now.to}) : std::nullopt;
+  if (axis.moved.others >= std::max(k_moves, k_coarse * axis.step)) return DeadInterval{axis.moved.from, axis.moved.to};
   for (const NoiseWatch& noise : axis.noise) {
     const auto silence = noise.silence(axis.step);
     if (!silence) continue;
-    // At the end of the sensor's range a constant value is clipped.
+    // A constant value at either end of the axis' range is clipped, not stuck.
     const bool is_constant = silence->least == silence->greatest;
     if (is_constant && (silence->least == axis.least || silence->greatest == axis.greatest)) continue;
-    return Stuck{silence->from, silence->to};
+    return DeadInterval{silence->from, silence->to};
   }
   return {};
 }

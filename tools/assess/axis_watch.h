@@ -1,4 +1,4 @@
-// Detects axes of a recorder that do not measure: constant while another moves, or without the noise that they have otherwise.
+// Detects axes of a recorder that do not measure: the value is constant while other axes change, or the noise of the axis stops.
 #pragma once
 
 #include "tools/assess/noise_watch.h"
@@ -11,7 +11,7 @@
 
 namespace steplap::assess {
 
-/// Receives the samples as read, m/s².
+/// Inspects the samples as read from the file, m/s².
 class AxisWatch {
 public:
   /// Adds a sample with `axes` values.
@@ -19,28 +19,28 @@ public:
   /// Must be called after the last sample.
   void finish();
 
-  struct Stuck {
-    double from = 0.0, to = 0.0; ///< s
+  struct DeadInterval {
+    double from = 0.0, to = 0.0; ///< begin and end of the interval, s
   };
-  /// Returns the interval in which the axis was constant while others moved, or had no noise; nothing if there is none.
-  [[nodiscard]] std::optional<Stuck> stuck(std::size_t axis) const;
-  /// Returns the median of the first second, m/s². A shock in this second would change a mean, but hardly the median.
+  /// Returns the interval in which the axis was constant while others changed, or had no noise; nothing if there is none.
+  [[nodiscard]] std::optional<DeadInterval> stuck(std::size_t axis) const;
+  /// Returns the median of the first second, m/s². A mean would be changed by a shock in this second.
   [[nodiscard]] double rest(std::size_t axis) const;
-  /// Returns true if the axis changes by only a few steps of its converter while another axis changes at least twenty times as much.
+  /// Returns true if the axis changes by at most four steps of its converter while another changes at least twenty times as much.
   [[nodiscard]] bool is_insensitive(std::size_t axis) const;
 
 private:
   struct Run {
     double from = 0.0, to = 0.0;
     std::size_t rows = 0;
-    double others = 0.0; ///< largest range of another axis during the run, m/s²
+    double others = 0.0; ///< largest change of another axis while this one was constant, m/s²
   };
   struct Axis {
-    double value = 0.0, step = std::numeric_limits<double>::infinity(); ///< m/s²; smallest change of the value
+    double value = 0.0, step = std::numeric_limits<double>::infinity(); ///< present value and smallest change of the value, m/s²
     double least = std::numeric_limits<double>::infinity(), greatest = -std::numeric_limits<double>::infinity();
     std::size_t changes = 0;
-    Run now, moved;                      ///< current run; the long run in which other axes moved most
-    std::array<double, 3> low{}, high{}; ///< minimum and maximum of all axes during the run
+    Run now, moved;                      ///< the current constant interval; the long one in which other axes changed most
+    std::array<double, 3> low{}, high{}; ///< range of each axis during the constant interval, m/s²
     std::array<NoiseWatch, 2> noise{NoiseWatch(1), NoiseWatch(8)};
   };
   static void end_run(Axis& axis);

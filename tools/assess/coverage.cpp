@@ -12,8 +12,9 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_alive = 0.05 * k_gravity;          // m/s² from rest; any transport by road, rail or crane moves a recorder more
-constexpr double k_hours = 7200.0, k_minutes = 120.0; // s; above these durations text uses hours or minutes
+// m/s²; any road, rail or crane transport causes larger deviations from the reading at rest
+constexpr double k_alive = 0.05 * k_gravity;
+constexpr double k_hours = 7200.0, k_minutes = 120.0; // durations, s, above which texts use hours or minutes
 
 std::string span_text(double seconds) {
   return seconds > k_hours     ? rounded_text(seconds / 3600.0, 4) + " h"
@@ -35,7 +36,7 @@ std::optional<Stamp> instant(const std::string& text) {
 
 MissingEvidence missing(const std::string& reason, const std::string& remedy) { return {Evidence::coverage, reason, remedy}; }
 
-// Returns the largest deviation of an axis from its reading at rest, m/s². A tilt or an offset of the sensor does not move the recorder.
+// Returns the largest deviation of an axis from its reading at rest, m/s². A tilt or an offset of the sensor causes none.
 double largest_motion(const RecordEvents& record) {
   double most = 0.0;
   for (std::size_t i = 0; i < record.recording.layout.axes.size(); ++i) {
@@ -50,20 +51,20 @@ double length_of(const Voyage& voyage) {
   return voyage.is_clock ? 1e-9 * static_cast<double>(voyage.to_ns - voyage.from_ns) : voyage.to - voyage.from;
 }
 
-// Intervals of the voyage that no record covers, s from its begin: the first one, and the sum of all.
-struct Uncovered {
+// Intervals of the voyage without records: the first one, in s from the begin of the voyage, and the sum of all.
+struct UncoveredTime {
   double from = 0.0, to = 0.0, sum = 0.0;
 };
-Uncovered uncovered_of(const std::vector<RecordEvents>& records, const Voyage& voyage) {
+UncoveredTime uncovered_of(const std::vector<RecordEvents>& records, const Voyage& voyage) {
   const double length = length_of(voyage);
   std::vector<std::array<double, 2>> spans;
   for (const RecordEvents& record : records) {
     const double start = voyage.is_clock ? 1e-9 * static_cast<double>(*record.clock_ns - voyage.from_ns) : -voyage.from;
-    const double slack = record.rate > 0.0 ? 1.5 / record.rate : 0.0; // a row represents the sampling interval around it
+    const double slack = record.rate > 0.0 ? 1.5 / record.rate : 0.0; // a row represents the sampling interval around its time
     spans.push_back({start + record.recording.facts.first - slack, start + record.recording.facts.last + slack});
   }
   std::sort(spans.begin(), spans.end());
-  Uncovered u;
+  UncoveredTime u;
   double reached = 0.0;
   const auto add = [&](double from, double to) {
     if (to <= from) return;
@@ -149,7 +150,7 @@ std::optional<MissingEvidence> uncovered(const std::vector<RecordEvents>& record
   if (!voyage->is_clock && records.size() > 1)
     return missing("The voyage is given in seconds of one record, and there are " + std::to_string(records.size()) + ".",
                    "Give two dates with times of day.");
-  if (const Uncovered u = uncovered_of(records, *voyage); u.sum > 0.0)
+  if (const UncoveredTime u = uncovered_of(records, *voyage); u.sum > 0.0)
     return missing(seen + " The journey was said to last " + voyage->text + ": " + span_text(u.sum) + " of it are not covered, the first " +
                        span_text(u.to - u.from) + " from " +
                        (voyage->is_clock ? stamp_text(voyage->from_ns + static_cast<std::int64_t>(std::llround(u.from * 1e9))).substr(0, 19)

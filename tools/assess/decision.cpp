@@ -17,22 +17,23 @@ std::string percent(double share) { return rounded_text(std::round(1e3 * share) 
 
 Decision outcome_of(const DecisionCriterion& c) { return c.outcome == "return" ? Decision::send_back : Decision::inspect; }
 
-// The largest value that a recorder measured, with its location.
+// Largest value of a quantity in the records, and where it was measured.
 struct Reading {
   double value = 0.0;
   std::size_t event = k_no_event;
   char axis = 'x';
-  double bandwidth = 0.0; ///< Hz
+  double bandwidth = 0.0; ///< bandwidth of the record, Hz
   bool is_known = true;
-  bool is_beneath = false; ///< true if shocks below the threshold were not searched and may exceed the limit
+  bool may_be_exceeded_below = false; ///< true if shocks below the event threshold might exceed the limit, because they were not searched
   static constexpr std::size_t k_no_event = static_cast<std::size_t>(-1);
 };
 
-constexpr double k_told = 95.0; // Hz; with less bandwidth the peak of a shock in g has no meaning (the same impact reads 18 g or 1.5 g)
+constexpr double k_least_bandwidth = 95.0; // smallest useful bandwidth for peaks, Hz; with less, one impact can read 18 g or 1.5 g
 
-// Returns true if the criterion refers to the recorder's own readings: no filter was applied, or only one that hides shocks.
-bool looks_at_rows(const DecisionCriterion& c, const RecordEvents& record) {
-  return c.quantity == "peak" && c.bandwidth == "record" && (!record.is_filtered || record.bandwidth < k_told);
+// Returns true if the criterion must be applied to the unfiltered rows: no filter was applied, or one whose bandwidth is too small for
+// peaks.
+bool applies_to_rows(const DecisionCriterion& c, const RecordEvents& record) {
+  return c.quantity == "peak" && c.bandwidth == "record" && (!record.is_filtered || record.bandwidth < k_least_bandwidth);
 }
 
 double value_of(const DecisionCriterion& c, const AxisEvent& axis) {
@@ -40,7 +41,7 @@ double value_of(const DecisionCriterion& c, const AxisEvent& axis) {
   return std::abs(c.bandwidth == "100 Hz" ? axis.at_cfc60 : c.bandwidth == "17 Hz" ? axis.at_cfc10 : axis.peak);
 }
 
-// Returns the largest value of all rows without the subtracted offset.
+// Returns the largest magnitude of an axis in the unfiltered rows, without offset, m/s².
 double largest_row(const RecordEvents& record, std::size_t axis) {
   const AxisFacts& facts = record.recording.facts.axes[axis];
   return std::max(std::abs(facts.greatest - record.offset[axis]), std::abs(facts.least - record.offset[axis]));
@@ -53,7 +54,8 @@ std::size_t event_of_row(const Assessment& a, std::size_t record, std::size_t ax
     if (a.events[e].record == record)
       for (const double value : a.records[record].events[a.events[e].event].window.plain[axis])
         if (std::abs(value) > most) most = std::abs(value), best = e;
-  return most >= 0.98 * largest_row(a.records[record], axis) ? best : Reading::k_no_event; // resampling may reduce the peak slightly
+  // the peak of an event is up to 2 % smaller than that of the rows because of resampling
+  return most >= 0.98 * largest_row(a.records[record], axis) ? best : Reading::k_no_event;
 }
 
 void take(Reading& largest, double value, std::size_t event, char axis, double bandwidth) {
@@ -66,14 +68,14 @@ void check_record(const DecisionCriterion& c, const Assessment& a, std::size_t r
   const std::vector<AxisColumn>& axes = record.recording.layout.axes;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     if (c.axis != "any" && axes[i].axis != c.axis.front()) continue;
-    if (looks_at_rows(c, record)) {
+    if (applies_to_rows(c, record)) {
       take(largest, largest_row(record, i), event_of_row(a, r, i), axes[i].axis, 0.5 * record.rate);
       continue;
     }
     for (std::size_t e = 0; e < a.events.size(); ++e)
       if (a.events[e].record == r)
         take(largest, value_of(c, record.events[a.events[e].event].event.axes[i]), e, axes[i].axis, record.bandwidth);
-    largest.is_beneath |= c.quantity == "peak" && record.rules.threshold > *c.at_most && largest_row(record, i) > *c.at_most;
+    largest.may_be_exceeded_below |= c.quantity == "peak" && record.rules.threshold > *c.at_most && largest_row(record, i) > *c.at_most;
   }
 }
 
@@ -84,14 +86,15 @@ Reading largest_reading(const DecisionCriterion& c, const Assessment& a) {
     const RecordLayout& layout = a.records[r].recording.layout;
     if (layout.is_peaks || (c.axis != "any" ? !a.records[r].axis(c.axis.front()) : layout.axes.size() < k_axes)) largest.is_known = false;
     if (!layout.is_peaks) check_record(c, a, r, largest);
-    for (const PeakEntry& entry : a.records[r].recording.peaks) // for a table of peaks at least its own bandwidth
+    // the bandwidth of a list of peaks is unknown, so its peaks count for every bandwidth
+    for (const PeakEntry& entry : a.records[r].recording.peaks)
       for (const double value : {entry.axis[0], entry.axis[1], entry.axis[2], entry.magnitude})
         if (c.quantity == "peak" && std::abs(value) > largest.value) largest.value = std::abs(value), largest.event = Reading::k_no_event;
   }
   return largest;
 }
 
-// Creates the reason for a criterion whose number exceeds its limit or is not known well enough.
+// Creates the reason of a criterion that is violated, or of one that cannot be decided.
 Reason judged(const DecisionCriterion& c, Decision outcome, std::string text, double excess = 0.0) {
   Reason reason{c.name, std::move(text), c.source, outcome, {}, excess};
   if (outcome == Decision::inspect || outcome == Decision::send_back) reason.tests = c.tests;
@@ -115,14 +118,14 @@ Reason judge_reading(const DecisionCriterion& c, const Assessment& a) {
                   largest.value / *c.at_most);
   if (!largest.is_known)
     return judged(c, Decision::open, "The records lack data that '" + c.name + "' requires: an axis, or high frequencies.");
-  if (largest.is_beneath)
+  if (largest.may_be_exceeded_below)
     return judged(c, Decision::open,
                   "Shocks above " + shown(*c.at_most) +
                       " may lie below the threshold from which shocks are looked at. Lower the threshold.");
   return judged(c, Decision::energise, what + shown(largest.value) + where + "; " + shown(*c.at_most) + " are allowed.");
 }
 
-// Returns why criteria on joints cannot be evaluated; "" if they can.
+// Returns the reason why criteria on joints cannot be evaluated; "" if they can.
 std::string joints_unknown(const Assessment& a) {
   bool has_joints = false;
   for (const VoyageEvent& event : a.events)
@@ -134,8 +137,8 @@ std::string joints_unknown(const Assessment& a) {
   return has_joints ? "" : "no model has a joint that can be judged.";
 }
 
-// Returns why criteria on runs cannot be evaluated (a record drove no model); "" if they can.
-std::string waves_unknown(const Assessment& a) {
+// Returns the reason why criteria on runs cannot be evaluated, for example because a record drove no model; "" if they can.
+std::string runs_unknown(const Assessment& a) {
   for (const RecordEvents& record : a.records)
     if (record.recording.layout.is_peaks && !record.pulse)
       return "'" + record.file + "' holds peaks without a waveform, and no model was driven by them: a pulse can be assumed.";
@@ -144,7 +147,7 @@ std::string waves_unknown(const Assessment& a) {
 
 std::string unknown_of(const DecisionCriterion& c, const Assessment& a, const VoyageSummary& s) {
   if (!s.unknown.empty()) return s.unknown;
-  if (const std::string waves = waves_unknown(a); !waves.empty()) return waves;
+  if (const std::string waves = runs_unknown(a); !waves.empty()) return waves;
   return c.quantity == "acceptance" || c.quantity == "lift" ? "" : joints_unknown(a);
 }
 
@@ -155,12 +158,13 @@ Reason judge_flag(const DecisionCriterion& c, const std::string& unknown, bool h
   return judged(c, Decision::energise, no);
 }
 
-// Returns the reason by all limits, unless only assumed limits make it "return": then it is "inspect". `known` is the reason without them.
+// Returns `all`, the reason from all limits. If it is "return" only because of assumed limits, it becomes "inspect". `known` is the reason
+// from the other limits.
 Reason without_assumed_return(Reason all, Reason known) {
   if (all.outcome != Decision::send_back) return all;
   if (known.outcome == Decision::send_back) return known;
   all.outcome = Decision::inspect;
-  all.excess = std::numeric_limits<double>::infinity(); // first of all that ask to inspect: by it the machine would be sent back
+  all.excess = std::numeric_limits<double>::infinity(); // placed first among reasons to inspect, because it would otherwise be a "return"
   all.text += " The limit is assumed, and no other requires \"return\": find out the true limit before the machine is sent back.";
   return all;
 }
@@ -188,7 +192,8 @@ Reason judge_probability(const DecisionCriterion& c, const Probability& p, const
                            percent(p.high) + ", " + std::to_string(p.runs) + " samples" +
                            (p.unknown > 0 ? ", " + std::to_string(p.unknown) + " of them without a result" : "") + "); " +
                            percent(*c.at_most) + " are allowed";
-  if (p.low > *c.at_most) return judged(c, outcome_of(c), text + ".", 1.0); // it sums up the other criteria, so it comes after them
+  // excess 1 places it after the single criteria, which it summarises
+  if (p.low > *c.at_most) return judged(c, outcome_of(c), text + ".", 1.0);
   if (p.high > *c.at_most) return judged(c, Decision::open, text + ", which lies within the interval: more samples are needed.");
   return judged(c, Decision::energise, text + ".");
 }
@@ -204,7 +209,8 @@ Probability largest_slip(const Assessment& a) {
 Reason judge_criterion(const DecisionCriterion& c, const Assessment& a, const VoyageSummary& s) {
   if (c.basis == CriterionBasis::reading) return judge_reading(c, a);
   const std::string unknown = unknown_of(c, a, s);
-  const double demand = s.least_margin >= 0.0 ? 1.0 / s.least_margin : 0.0; // over capacity, of the joint nearest to slip; NaN: unknown
+  // demand over capacity of the joint nearest to slip; NaN: unknown
+  const double demand = s.least_margin >= 0.0 ? 1.0 / s.least_margin : 0.0;
   if (c.quantity == "slip")
     return judge_flag(c, unknown, s.slips, demand, s.first_slip.empty() ? "A joint slips." : s.first_slip + ".",
                       "No joint slips in any event.");
@@ -224,12 +230,12 @@ Reason judge_criterion(const DecisionCriterion& c, const Assessment& a, const Vo
                           " is required.",
                       "The least margin of a joint is " + rounded_text(s.least_margin, 3) + ".");
   if (c.quantity == "acceptance") return judge_acceptance(c, s, unknown);
-  if (c.quantity == "slip_probability") return judge_probability(c, largest_slip(a), "slip in an event", waves_unknown(a));
-  const std::string of = "damage in the voyage", waves = waves_unknown(a);
+  if (c.quantity == "slip_probability") return judge_probability(c, largest_slip(a), "slip in an event", runs_unknown(a));
+  const std::string of = "damage in the voyage", waves = runs_unknown(a);
   return without_assumed_return(judge_probability(c, a.damage, of, waves), judge_probability(c, a.known_damage, of, waves));
 }
 
-// Judges both planes together: friction is one vector, but each model judged only the component in its plane.
+// Judges frictions shared by two planes. Friction is one vector, but each model judges only the component in its own plane.
 Reason judge_planes(const VoyageSummary& s) {
   const char* const name = "friction of several planes";
   const char* const source = "rules of this program";
@@ -241,8 +247,8 @@ Reason judge_planes(const VoyageSummary& s) {
   return {name, s.planes_slip, source, outcome, {}, s.planes_use};
 }
 
-// Adds reasons that are independent of the criteria: missing evidence prevents "energise".
-void add_own(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& reasons) {
+// Adds reasons that are not criteria of the file: for example, missing evidence prevents "energise".
+void add_rules_of_program(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& reasons) {
   const auto open = [&](const char* name, const std::string& text) {
     reasons.push_back({name, text, "rules of this program", Decision::open, {}, 0.0});
   };
@@ -257,7 +263,7 @@ void add_own(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& r
 std::vector<Reason> reasons_of(const Assessment& a, const VoyageSummary& s) {
   std::vector<Reason> reasons;
   for (const DecisionCriterion& c : a.criteria.criteria) reasons.push_back(judge_criterion(c, a, s));
-  add_own(a, s, reasons);
+  add_rules_of_program(a, s, reasons);
   std::stable_sort(reasons.begin(), reasons.end(),
                    [](const Reason& x, const Reason& y) { return x.outcome != y.outcome ? x.outcome > y.outcome : x.excess > y.excess; });
   return reasons;
@@ -275,7 +281,7 @@ Decision decision_by_criteria(const Assessment& assessment, const VoyageSummary&
 Decision decision_of(const Assessment& assessment, const VoyageSummary& summary) {
   Decision worst = decision_by_criteria(assessment, summary);
   std::vector<Reason> own;
-  add_own(assessment, summary, own);
+  add_rules_of_program(assessment, summary, own);
   for (const Reason& reason : own) worst = std::max(worst, reason.outcome);
   return worst;
 }

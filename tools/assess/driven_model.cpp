@@ -26,7 +26,7 @@ namespace steplap::assess {
 
 namespace {
 
-// A signal whose samples are given in memory, not in a file.
+// A signal defined by samples in memory instead of a file.
 struct Recorded : SignalDefinition {
   std::vector<DriveHistory> histories;
   enum class Axis { x, y, across } axis = Axis::x;
@@ -35,12 +35,12 @@ struct Recorded : SignalDefinition {
   }
 };
 
-// The acceleration across the sheets must be continuous. A history ends at zero; if it continues, it holds its last value until the next
-// one.
+// Returns the acceleration across the sheets as a continuous signal. Each history ends at zero, except if the next one continues it; then
+// its last value is held.
 Signal build_pressing(const Recorded& recorded) {
   std::vector<Signal::Piece> pieces(1);
   double held = 0.0;
-  bool is_held = true; // constant before the first breakpoint
+  bool is_held = true; // true while the signal is constant
   for (const DriveHistory& history : recorded.histories) {
     std::vector<double> a = history.across;
     if (a.size() < 2) continue;
@@ -61,7 +61,7 @@ Signal build_pressing(const Recorded& recorded) {
 
 Signal build_recorded(const SignalDefinition& definition) {
   const auto& recorded = static_cast<const Recorded&>(definition);
-  std::vector<Signal::Piece> pieces(1); // at rest from t = 0
+  std::vector<Signal::Piece> pieces(1); // zero before the first history
   if (recorded.axis == Recorded::Axis::across) return build_pressing(recorded);
   for (const DriveHistory& history : recorded.histories) {
     const std::vector<double>& a = recorded.of(history);
@@ -104,7 +104,7 @@ void add_drive(Model& model, const std::string& name, const Recorder& recorder, 
   motion.as = "acceleration";
 }
 
-// The record's third axis replaces the signals that press cores and joints across their sheets.
+// Replaces the signals that press cores and joints across their sheets by the third axis of the record.
 void add_across(Model& model, const Recorder& recorder, std::vector<std::string>& notes) {
   if (recorder.across == "none") return;
   const auto is_taken = [&](std::string& signal, const std::string& name) {
@@ -141,18 +141,18 @@ void refuse_other_drives(const Model& model, const Recorder& recorder, const std
   }
 }
 
-// Returns true if a channel of a criterion or figure belongs to a removed element.
-bool looks_at(const std::string& channel, const std::set<std::string>& gone) {
+// Returns true if the channel belongs to one of the removed elements.
+bool belongs_to_any(const std::string& channel, const std::set<std::string>& gone) {
   return std::any_of(gone.begin(), gone.end(), [&](const std::string& name) { return channel.starts_with(name + "."); });
 }
 
-void take_out(Model& model, const Recorder& recorder, std::vector<std::string>& notes) {
+void remove_replaced(Model& model, const Recorder& recorder, std::vector<std::string>& notes) {
   const std::set<std::string> gone(recorder.replaces.begin(), recorder.replaces.end());
   std::erase_if(model.elements, [&](const ElementEntry& e) { return gone.contains(e.element->name); });
   std::set<const Element*> unused;
-  for (const Plot* const plot : tables_of<Plot>(std::as_const(model))) unused.insert(plot); // figures are not drawn
+  for (const Plot* const plot : tables_of<Plot>(std::as_const(model))) unused.insert(plot); // signals used only by figures count as unused
   for (const Criterion* const c : tables_of<Criterion>(std::as_const(model))) {
-    if (!looks_at(c->channel, gone) && !gone.contains(c->element)) continue;
+    if (!belongs_to_any(c->channel, gone) && !gone.contains(c->element)) continue;
     notes.push_back("'" + c->name + "' is not asked: the record takes the place of what it looks at.");
     unused.insert(c);
   }
@@ -189,8 +189,8 @@ DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& even
     return values;
   };
   DriveHistory history;
-  // An event must begin and end at rest. The remaining signal is reduced to zero along a cosine, in the half that is further from the
-  // shock.
+  // Reduces the signal to zero at both ends of the window by a cosine taper, because an event must begin and end at rest. The tapers occupy
+  // the outer halves of lead and tail.
   const std::size_t rise = window.lead / 2, fall = window.tail / 2;
   const auto weight = [&](std::size_t i) {
     const auto ramp = [](std::size_t at, std::size_t length) {
@@ -205,7 +205,7 @@ DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& even
   if (recorder.across != "none") history.across = along(recorder.across);
   for (std::vector<double>* const values : {&a, &b, &history.across}) {
     if (values->empty() || recorder.drift != "line" || count < 2) continue;
-    double sum = 0.0; // sum of the trapezoids between samples
+    double sum = 0.0; // trapezoidal sum, in units of the sampling interval
     for (std::size_t i = 1; i < count; ++i) sum += 0.5 * ((*values)[i - 1] + (*values)[i]);
     const double mean = sum / static_cast<double>(count - 1);
     for (double& value : *values) value -= mean;
@@ -220,19 +220,20 @@ DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& even
 }
 
 double trace_step(const DriveHistory& history) {
-  constexpr double k_most = 1e-3, k_least = 5e-4; // s; contacts of heavy machines vibrate below 100 Hz
+  // limits of the step, s; 1 ms resolves vibration of heavy machines' contacts, below 100 Hz
+  constexpr double k_most = 1e-3, k_least = 5e-4;
   if (history.step > k_most) return history.step / std::ceil(history.step / k_most);
   return history.step * std::ceil(k_least / history.step);
 }
 
 std::string check_gravity(const RecordEvents& record, const DrivenModel& model) {
-  constexpr double k_seen = 0.7, k_other = 0.5; // g: smallest reading that shows gravity along this axis; reading that shows it along
-                                                // another axis in spite of shocks in the first second
+  // g: smallest reading of gravity; largest deviation from the expected reading, which allows for shocks in the first second
+  constexpr double k_gravity_seen = 0.7, k_other = 0.5;
   const std::vector<AxisColumn>& axes = record.recording.layout.axes;
   double size = 0.0;
   for (std::size_t i = 0; i < axes.size(); ++i) size += record.rest[i] * record.rest[i];
-  if (model.given.header.gravity.norm() < k_seen * k_gravity || record.recording.layout.is_peaks) return "";
-  if (std::sqrt(size) < k_seen * k_gravity)
+  if (model.given.header.gravity.norm() < k_gravity_seen * k_gravity || record.recording.layout.is_peaks) return "";
+  if (std::sqrt(size) < k_gravity_seen * k_gravity)
     return "'" + record.file + "' has no gravity in it: that its axes point as '" + model.name + "' says could not be seen.";
   // At rest an accelerometer reads the reaction of its support, opposite to gravity.
   const Vec2 up = -model.given.header.gravity / model.given.header.gravity.norm();
@@ -259,18 +260,18 @@ DrivenModel driven_model(Model given, const std::string& name) {
   DrivenModel driven;
   driven.name = name;
   driven.recorder = *found;
-  const Model whole = completed(given); // inherited positions of bodies are known afterwards
+  const Model whole = completed(given); // positions of bodies inherited from extended files are known only after completion
   const auto marker = std::find_if(whole.markers.begin(), whole.markers.end(), [&](const Marker& m) { return m.name == found->marker; });
   driven.body = marker->body;
   driven.marker_angle = marker->angle + whole.find_body(driven.body)->angle;
-  take_out(given, driven.recorder, driven.notes);
+  remove_replaced(given, driven.recorder, driven.notes);
   begin_at_rest(given, driven.notes);
   refuse_other_drives(given, driven.recorder, driven.body);
   add_drive(given, k_along_x, driven.recorder, "x");
   add_drive(given, k_along_y, driven.recorder, "y");
   if (driven.recorder.rotation == "held") add_drive(given, k_angle, driven.recorder, "angle");
   add_across(given, driven.recorder, driven.notes);
-  for (TableEntry& entry : given.tables) // elements that it names may have been removed, and no usual run uses it
+  for (TableEntry& entry : given.tables) // the elements named here may have been removed
     if (entry.kind == &recorder_kind()) static_cast<Recorder&>(*entry.table).replaces.clear();
   driven.assumed_limits = assumed_limits(given);
   driven.given = std::move(given);
@@ -294,7 +295,7 @@ void drive_by(Model& driven, std::vector<DriveHistory> histories, double end) {
     if (recorded.name != k_angle) recorded.histories = histories;
   }
   driven.simulation.end = end;
-  driven.output.step = end; // extremes and events do not depend on it
+  driven.output.step = end; // only the final output sample is needed; extremes and events do not depend on the step
 }
 
 } // namespace steplap::assess

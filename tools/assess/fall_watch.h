@@ -7,14 +7,14 @@
 
 namespace steplap::assess {
 
-/// Receives samples as read, m/s², and keeps the longest interval in which the magnitude of all axes is below 0.3 g.
+/// Finds the longest interval in which the magnitude over all axes is below 0.3 g. Receives the samples as read, m/s².
 class FallWatch {
 public:
-  static constexpr double k_weightless = 0.3 * 9.80665;   ///< m/s²; jolts of a road do not stay below this for k_least
-  static constexpr double k_gravity_seen = 0.7 * 9.80665; ///< m/s²; smallest reading at rest of a recorder that includes gravity
-  static constexpr double k_least = 0.1;                  ///< s; a fall of 5 cm
+  static constexpr double k_weightless = 0.3 * 9.80665;   ///< m/s²; road shocks do not stay below this value for `k_least`
+  static constexpr double k_gravity_seen = 0.7 * 9.80665; ///< m/s²; a recorder that reads less at rest does not include gravity
+  static constexpr double k_least = 0.1;                  ///< shortest interval, s; corresponds to a fall of 5 cm
 
-  /// Must be called at each begin of a segment: a fall cannot extend across a gap.
+  /// Must be called at the begin of each segment, because a fall cannot be followed across a gap.
   void begin_segment() { is_inside_ = false; }
   /// Adds a sample with `axes` values.
   void put(double t, const double* a, std::size_t axes) {
@@ -24,7 +24,7 @@ public:
     else if (!is_inside_) is_inside_ = true, from_ = t;
     else if (t - from_ > longest_) longest_ = t - from_, at_ = from_;
   }
-  [[nodiscard]] double longest() const { return longest_; } ///< s
+  [[nodiscard]] double longest() const { return longest_; } ///< duration of the interval, s
   [[nodiscard]] double at() const { return at_; }           ///< begin of the interval, s
 
 private:

@@ -1,5 +1,5 @@
-// Finds the uncertain number on which the decision depends: the one that changes the decision closest to its nominal value, with all other
-// numbers constant. Uses bisection between the nominal value and an end of the distribution.
+// Finds the uncertain numbers that change the decision if varied alone within the middle 99 % of their distribution, and the values at
+// which it changes, by bisection between the nominal value and each end.
 #include "tools/assess/hangs_on.h"
 
 #include "mbd/base/shown_text.h"
@@ -12,10 +12,10 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_tail = 0.005;   // probability in each tail; values beyond are not examined
-constexpr double k_located = 0.01; // of the distance between the nominal value and that end
+constexpr double k_tail = 0.005;   // tail probability of the ends of the distribution
+constexpr double k_located = 0.01; // accuracy, relative to the distance from the nominal value to the end
 
-struct Turn {
+struct ChangedDecision {
   double value = 0.0;
   VoyageSummary summary;
 };
@@ -26,10 +26,10 @@ VoyageSummary with(const Assessment& a, std::size_t which, double value) {
   return voyage_with(a.models, a.histories, *a.uncertain, values, a.shared).summary;
 }
 
-std::optional<Turn> turn_towards(const Assessment& a, std::size_t which, double end) {
+std::optional<ChangedDecision> changed_decision_towards(const Assessment& a, std::size_t which, double end) {
   const Decision own = decision_of(a, a.summary);
   const double start = a.uncertain->values()[which].nominal;
-  Turn turn{end, with(a, which, end)};
+  ChangedDecision turn{end, with(a, which, end)};
   if (decision_of(a, turn.summary) == own) return {};
   double same = 0.0, other = 1.0;
   while (other - same > k_located) {
@@ -43,13 +43,13 @@ std::optional<Turn> turn_towards(const Assessment& a, std::size_t which, double 
 
 } // namespace
 
-void find_what_it_hangs_on(const AssessmentOptions& options, Assessment& a) {
+void find_dependence(const AssessmentOptions& options, Assessment& a) {
   if (a.events.empty() || a.uncertain->empty() || options.sampling.samples <= 0 || !a.summary.unknown.empty()) return;
   const std::vector<UncertainValue>& values = a.uncertain->values();
   for (std::size_t i = 0; i < values.size(); ++i)
     for (const double p : {k_tail, 1.0 - k_tail}) {
       if (options.progress) options.progress("dependence of the decision", static_cast<long>(i), static_cast<long>(values.size()));
-      const std::optional<Turn> turn = turn_towards(a, i, a.uncertain->quantile(i, p));
+      const std::optional<ChangedDecision> turn = changed_decision_towards(a, i, a.uncertain->quantile(i, p));
       if (!turn) continue;
       const std::string why = turn->summary.slips && !a.summary.slips ? turn->summary.first_slip
                               : !turn->summary.unknown.empty()        ? turn->summary.unknown

@@ -1,11 +1,11 @@
-// Finds the uncertain number on which the decision depends most.
+// Finds the uncertain numbers on which the decision depends.
 #pragma once
 
 #include "tools/assess/assessment.h"
 
 namespace steplap::assess {
 
-/// Fills `hangs_on` of an assessment after its decision, with sentences for the user.
-void find_what_it_hangs_on(const AssessmentOptions& options, Assessment& assessment);
+/// Fills `hangs_on` of a decided assessment with sentences for the user.
+void find_dependence(const AssessmentOptions& options, Assessment& assessment);
 
 } // namespace steplap::assess

@@ -8,26 +8,29 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr int k_dull = 12;          // least number of repeating rows among the last 16 in a stretch without noise
-constexpr int k_side = 32;          // rows before and after such a stretch that must show noise
-constexpr double k_often = 0.5;     // largest share of repeating rows where there is noise
-constexpr double k_fine = 0.25;     // largest probability that a row of noise repeats; coarser noise is not missed when it stops
+constexpr int k_dull = 12;      // smallest number of repeating rows among the last 16 for an interval without noise
+constexpr int k_side = 32;      // number of rows before and after such an interval that must contain noise
+constexpr double k_often = 0.5; // largest fraction of repeating rows in an interval with noise
+// largest probability of repetition at which the end of noise can be detected; noise coarser than this repeats too often
+constexpr double k_fine = 0.25;
 constexpr double k_mode = 1.4143;   // the most frequent value repeats √2 times as often as all do on average
-constexpr double k_rarely = 0.05;   // least probability of a repetition that is assumed, because it is found from few rows
-constexpr double k_chance = 1e-6;   // probability that noise alone makes the stretch somewhere in the record
-constexpr double k_brief = 0.005;   // s; a shock within it has frequencies to which joints do not respond
-constexpr std::size_t k_many = 100; // rows from which the probability of a repetition is found
-constexpr std::size_t k_block = 16; // rows from which the deviation of the noise is found
-constexpr double k_white = 3.6;     // mean square of second differences over the variance: 6 for noise, less for a vibration below a
-                                    // quarter of the sampling rate
-constexpr std::size_t k_blocks = 4; // white blocks that show the noise
-constexpr double k_quiet = 0.1;     // share of the white blocks that are quieter than the one that is taken
-constexpr std::size_t k_kept_blocks = 1024; // bounds the memory
-constexpr double k_density = 0.2821;        // probability that two rows are equal, times the standard deviation in steps: 1/(2 √π)
+constexpr double k_rarely = 0.05;   // smallest probability of repetition used, because the estimate is based on few rows
+constexpr double k_chance = 1e-6;   // largest probability that noise alone causes such an interval anywhere in the record
+constexpr double k_brief = 0.005;   // shortest interval, s; a shorter shock has only frequencies to which joints do not respond
+constexpr std::size_t k_many = 100; // smallest number of rows for an estimate of the probability of repetition
+constexpr std::size_t k_block = 16; // number of rows in a block
+// a block is white noise if the mean square of its second differences exceeds this multiple of the variance: 6 for white noise, less for
+// vibration below a quarter of the sampling rate
+constexpr double k_white = 3.6;
+constexpr std::size_t k_blocks = 4;         // smallest number of white blocks for an estimate of the noise
+constexpr double k_quiet = 0.1;             // quantile of the white blocks' deviations that is used as the noise
+constexpr std::size_t k_kept_blocks = 1024; // largest number of deviations kept, which limits the memory
+constexpr double k_density = 0.2821;        // probability that two rows are equal, times σ in steps: 1/(2 √π)
 
 int repeats_in(std::uint64_t history, int rows) { return std::popcount(history & ((std::uint64_t{1} << rows) - 1)); }
 
-// Chernoff's bound of the probability that `share` of the rows or more repeat if each does with probability q < share.
+// Returns Chernoff's bound for the probability that at least the fraction `share` of the rows repeats, if each repeats with probability q <
+// share.
 double bound_of_chance(double share, double q, double rows) {
   const double rest = share < 1.0 ? (1.0 - share) * std::log((1.0 - share) / (1.0 - q)) : 0.0;
   return std::exp(-rows * (share * std::log(share / q) + rest));
@@ -57,15 +60,16 @@ void NoiseWatch::put(double t, double value) {
   }
 }
 
-// Keeps the deviations of white blocks, and thins them out when they become too many.
+// Adds a value to the current block. Stores the standard deviation of each completed block of white noise; if there are too many, every
+// second one is deleted.
 void NoiseWatch::take_block(double value) {
   if (block_.rows == 0) block_.first = value;
-  const double x = value - block_.first, bend = value - 2.0 * value_before(1) + value_before(2);
-  block_.sum += x, block_.squares += x * x, block_.bends += bend * bend;
+  const double x = value - block_.first, second_difference = value - 2.0 * value_before(1) + value_before(2);
+  block_.sum += x, block_.squares += x * x, block_.second_differences += second_difference * second_difference;
   if (++block_.rows < k_block) return;
   const double count = static_cast<double>(block_.rows), mean = block_.sum / count;
   const double variance = std::max(0.0, block_.squares / count - mean * mean);
-  const bool is_white = block_.bends / count >= k_white * variance;
+  const bool is_white = block_.second_differences / count >= k_white * variance;
   block_ = {};
   if (!is_white || blocks_++ % stride_ != 0) return;
   deviations_.push_back(std::sqrt(variance));
@@ -75,7 +79,7 @@ void NoiseWatch::take_block(double value) {
   stride_ *= 2;
 }
 
-// The stretch began with the rows that are kept.
+// Starts an interval without noise at the oldest row that is still in memory.
 void NoiseWatch::open() {
   const std::size_t kept = std::min(rows_, k_kept);
   now_ = {times_[(rows_ - kept) % k_kept],
@@ -106,7 +110,7 @@ std::optional<NoiseWatch::Silence> NoiseWatch::silence(double step) const {
   std::vector<double> deviations = deviations_;
   const auto quiet = deviations.begin() + static_cast<std::ptrdiff_t>(k_quiet * static_cast<double>(deviations.size()));
   std::nth_element(deviations.begin(), quiet, deviations.end());
-  const double noise = *quiet / step; // steps
+  const double noise = *quiet / step; // standard deviation of the noise, in steps of the converter
   if (!(1.0 - std::exp(-k_density * static_cast<double>(near_) / noise) <= k_fine)) return {};
   const auto outside = static_cast<double>(rows_ - longest_.rows);
   const double share = k_mode * static_cast<double>(repeats_ - std::min(repeats_, longest_.repeats)) / outside;

@@ -1,9 +1,10 @@
-// Detects the stretch in which an axis of a recorder lost its noise: it was stuck, toggled between a few values, or the recorder stood still.
+// Detects an interval in which the noise of a recorder's axis is missing: the axis was stuck or toggled between a few values, or the
+// recorder did not record.
 //
-// A row repeats if its value is one of the `near` values before it. Noise of standard deviation σ, in steps of the converter, repeats with
-// a probability of about 1 − exp(−0.28 near/σ). Noise never stops: a stretch in which nearly all rows repeat, between rows with noise, was not
-// measured. σ is found where the signal is white, that is at rest. If the steps are as coarse as the noise, or if the record has many such
-// stretches, they cannot be told from rest.
+// A row repeats if its value equals one of the `near` values before it. Noise with the standard deviation σ, in steps of the converter,
+// repeats with a probability of about 1 − exp(−0.28 near/σ). Real noise never stops, so an interval in which nearly all rows repeat,
+// between intervals with noise, was not measured. σ is estimated where the signal is white, that is at rest. If the steps are as coarse as
+// the noise, or if there are many such intervals, they cannot be distinguished from rest and are not reported.
 #pragma once
 
 #include <array>
@@ -14,10 +15,11 @@
 
 namespace steplap::assess {
 
-/// Receives the samples of one axis as read.
+/// Inspects the samples of one axis as read from the file.
 class NoiseWatch {
 public:
-  /// `near`: number of values that a row is compared with, at most 15. 1 finds constant values, more of them few values.
+  /// `near`: number of preceding values with which a row is compared, 1 to 15. 1 detects constant values; larger numbers detect toggling
+  /// between a few values.
   explicit NoiseWatch(std::size_t near) : near_(near) {}
 
   /// Adds a sample.
@@ -26,12 +28,12 @@ public:
   void finish();
 
   struct Silence {
-    double from = 0.0, to = 0.0;        ///< s
-    double least = 0.0, greatest = 0.0; ///< values in it, as given
+    double from = 0.0, to = 0.0;        ///< begin and end of the interval, s
+    double least = 0.0, greatest = 0.0; ///< smallest and largest value in the interval, in the unit of put()
     std::size_t rows = 0, repeats = 0;
   };
-  /// Returns the longest stretch without noise; nothing if there is none that noise would hardly make by chance. `step`: smallest change of
-  /// the value.
+  /// Returns the longest interval without noise that is too long to occur by chance (probability below 1e-6); nothing if there is none.
+  /// `step`: smallest change of the value.
   [[nodiscard]] std::optional<Silence> silence(double step) const;
 
 private:
@@ -41,11 +43,11 @@ private:
   void close(int repeats_after);
   static constexpr std::size_t k_kept = 16;
   std::size_t near_;
-  std::array<double, k_kept> times_{}, values_{}; ///< of the last rows
-  std::uint64_t history_ = 0;                     ///< a bit for each of the last 64 rows, the latest lowest: 1 if it repeats
+  std::array<double, k_kept> times_{}, values_{}; ///< times and values of the last rows
+  std::uint64_t history_ = 0;                     ///< one bit for each of the last 64 rows, 1 if it repeats; the last row is the lowest bit
   std::size_t rows_ = 0, repeats_ = 0, all_silent_ = 0;
-  struct Block { ///< sums over some rows of the values, less the first, their squares and the squares of the second differences
-    double first = 0.0, sum = 0.0, squares = 0.0, bends = 0.0;
+  struct Block { ///< sums over the rows of a block: values minus the first one, their squares, and squared second differences
+    double first = 0.0, sum = 0.0, squares = 0.0, second_differences = 0.0;
     std::size_t rows = 0;
   };
   Block block_;

@@ -12,8 +12,8 @@ namespace steplap::assess {
 
 namespace {
 
-// Speeds are relative to the driven body, which may move uniformly.
-double still_moving(const System& system, const State& state, const std::string& driven) {
+// Returns the largest speed of a body relative to the driven body, m/s.
+double final_speed(const System& system, const State& state, const std::string& driven) {
   std::size_t base = 0;
   for (std::size_t i = 1; i < system.bodies.size(); ++i)
     if (system.bodies[i].name == driven) base = i;
@@ -39,12 +39,12 @@ LimitPassage limit_of(const CriterionResult& criterion, bool is_assumed, const O
   return limit;
 }
 
-// Returns true for findings caused by the removal of replaced elements.
+// Returns true for findings that only result from the removal of replaced elements.
 bool is_of_replaced(const Finding& finding) { return finding.code == "unused_signal" || finding.code == "unused_marker"; }
 
 constexpr std::array<const char*, 3> k_pose = {".x", ".y", ".theta"};
 
-// Poses of the moving bodies in the sample next to time t, s.
+// Returns the poses of the moving bodies at the output sample nearest to time t, s.
 std::vector<BodyPose> poses_at(const System& system, const Trajectory& samples, double t) {
   const auto& times = samples.times();
   if (times.empty()) return {};
@@ -66,7 +66,7 @@ std::vector<BodyPose> poses_at(const System& system, const Trajectory& samples, 
   return poses;
 }
 
-// Returns the channels read from the samples: poses of all bodies, and those needed by shared frictions.
+// Returns the channels to be written: poses of all bodies, and those that shared frictions need.
 std::vector<std::string> sampled_channels(const Model& model, const std::vector<std::string>& traced) {
   std::vector<std::string> channels = traced_channels(traced);
   for (const Body& body : model.bodies)
@@ -89,7 +89,7 @@ std::vector<FootPassage> feet_of(const Report& report) {
 
 } // namespace
 
-Passage Traveller::broken(const std::string& why) {
+Passage VoyageModel::broken(const std::string& why) {
   Passage passage;
   passage.reason = why;
   passage.trust = "Nothing is known of this event.";
@@ -97,7 +97,7 @@ Passage Traveller::broken(const std::string& why) {
   return passage;
 }
 
-void Traveller::look(const Report& report, Passage& passage) {
+void VoyageModel::look(const Report& report, Passage& passage) {
   const RunResult& result = report.run.result;
   const Overview overview = overview_of(report);
   passage.verdict = overview.verdict;
@@ -119,7 +119,8 @@ void Traveller::look(const Report& report, Passage& passage) {
     p.margin = joint.smallest_margin;
     p.at = joint.time_of_smallest;
     if (joint.has_slipped)
-      p.slid = portable::hypot(joint.slid_x - slid_x_[i], joint.slid_y - slid_y_[i]); // otherwise the difference is rounding or elastic
+      // a joint that has not slipped may have moved by rounding or elastically; that is not counted
+      p.slid = portable::hypot(joint.slid_x - slid_x_[i], joint.slid_y - slid_y_[i]);
     slid_x_[i] = joint.slid_x, slid_y_[i] = joint.slid_y;
     p.slid_total = slid_total_[i] += p.slid;
     if (const ChannelRange* const left = report.find(joint.joint + ".overlap_left")) p.overlap_left = left->final;
@@ -145,7 +146,7 @@ void Traveller::look(const Report& report, Passage& passage) {
     if (std::find(passage.findings.begin(), passage.findings.end(), cap) == passage.findings.end()) passage.findings.push_back(cap);
 }
 
-Passage Traveller::pass(const DriveHistory& history, Estimating estimating) {
+Passage VoyageModel::pass(const DriveHistory& history, Estimating estimating) {
   if (!ended_.empty()) return broken(std::string(ended_));
   Model model = model_.given;
   drive_by(model, {history}, history.end() + (history.goes_on ? 0.0 : model_.recorder.settle));
@@ -166,7 +167,7 @@ Passage Traveller::pass(const DriveHistory& history, Estimating estimating) {
     if (!report.run.result.stop_reason.empty()) ended_ = report.run.result.stop_reason;
     state_ = report.run.result.final_state;
     state_->t = state_->dissipated = state_->work = 0.0;
-    passage.still_moving = still_moving(*loaded->system, *state_, model_.body);
+    passage.final_speed = final_speed(*loaded->system, *state_, model_.body);
     return passage;
   } catch (const NumericalFailure& failure) {
     return broken(failure.what());

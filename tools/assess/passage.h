@@ -13,34 +13,34 @@
 
 namespace steplap::assess {
 
-/// Returns true if the joint slipped or, for a joint that is only monitored, if its capacity was exceeded.
+/// Returns true if the joint slipped or, in mode "monitor", if its capacity was exceeded.
 [[nodiscard]] inline bool would_slip(const JointAssessment& joint) {
   return joint.has_slipped || (joint.is_monitored && joint.smallest_margin < 1.0);
 }
 
-/// Result of an event for a step-lap joint.
+/// Results of one event for a step-lap joint.
 struct JointPassage {
   std::string name;
   bool slips = false, came_apart = false;
-  double margin = 0.0, at = 0.0;       ///< smallest capacity over demand; its time, s
-  double slid = 0.0, slid_total = 0.0; ///< m: slide during this event; sum over all events so far
+  double margin = 0.0, at = 0.0;       ///< smallest ratio of capacity to demand, and its time, s
+  double slid = 0.0, slid_total = 0.0; ///< slide during this event, and sum over all events so far, m
   double overlap_left = 1.0;           ///< remaining overlap at the end, as a fraction of the initial overlap
-  std::optional<double> error;         ///< error of the margin; NaN: unknown
+  std::optional<double> error;         ///< error of the margin; NaN if unknown; empty if not estimated
 };
 
 /// A contact that opened during an event.
 struct FootPassage {
   std::string name;
-  double from = 0.0;            ///< s
-  std::optional<double> height; ///< largest gap, m
+  double from = 0.0;            ///< time at which the contact opened, s
+  std::optional<double> height; ///< largest gap during the event, m
 };
 
-/// A limit of an [[acceptance]] of the model with its result.
+/// A limit of an [[acceptance]] table, with its result for one event.
 struct LimitPassage {
   std::string name, unit, text;
   double value = 0.0, allowed = 0.0;
   double share = 0.0;                     ///< utilisation; 1 is the limit
-  bool is_met = true, is_assumed = false; ///< `is_assumed`: the limit itself is (assumed_limits.h)
+  bool is_met = true, is_assumed = false; ///< `is_assumed`: true if the limit itself is assumed (assumed_limits.h)
   Verdict outcome = Verdict::hold;
 };
 
@@ -52,27 +52,27 @@ struct BodyPose {
 
 /// Results of one event in one model.
 struct Passage {
-  std::size_t event = 0, model = 0; ///< indices
-  bool is_made = false;             ///< false if the run failed, or if an earlier event ended the voyage
+  std::size_t event = 0, model = 0; ///< indices of the event and of the model
+  bool is_made = false;             ///< false if the run failed, or if the voyage of this model ended in an earlier event
   Verdict verdict = Verdict::open;
   std::string reason, trust;
   TrustLevel trust_level = TrustLevel::none;
   bool is_trusted = false; ///< true if there is no reason to distrust the numbers
   std::vector<JointPassage> joints;
-  std::vector<std::string> unjudged; ///< joints without a result
+  std::vector<std::string> unjudged; ///< names of joints without a result
   std::vector<FootPassage> feet;
   std::vector<LimitPassage> reactions, clearances, others;
   std::vector<std::string> findings;
-  std::optional<double> worst_instant; ///< when a limit is nearest, s after the begin of the event
-  std::vector<BodyPose> poses;         ///< of the written sample next to it; empty without one
-  double still_moving = 0.0;           ///< largest speed of a body relative to the tank at the end, m/s
-  std::vector<SampledFriction> traces; ///< traces of the elements in DrivenModel::traced
+  std::optional<double> worst_instant; ///< time at which a utilisation is largest, s after the begin of the event
+  std::vector<BodyPose> poses;         ///< poses of the bodies at the output sample nearest to that time; empty if there is none
+  double final_speed = 0.0;            ///< largest speed of a body relative to the tank at the end of the event, m/s
+  std::vector<SampledFriction> traces; ///< friction histories of the elements in DrivenModel::traced
 };
 
-/// State of a model during the voyage.
-class Traveller {
+/// A model during the voyage: keeps the state between its events.
+class VoyageModel {
 public:
-  explicit Traveller(const DrivenModel& model) : model_(model) {}
+  explicit VoyageModel(const DrivenModel& model) : model_(model) {}
 
   /// Simulates the next event. `estimating` decides whether errors are estimated by finer runs. Throws ModelError if the model cannot be
   /// run.

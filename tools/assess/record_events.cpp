@@ -18,7 +18,7 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_felt = 0.5; // of the threshold; a larger reading at rest would be mistaken for shocks
+constexpr double k_felt = 0.5; // if the reading at rest exceeds this fraction of the threshold, it would trigger events
 
 std::string in_g(double a) { return rounded_text(a / k_gravity, 3) + " g"; }
 
@@ -53,7 +53,7 @@ public:
     for (std::size_t i = 0; i < axes_; ++i) means[i] = all_.mean(i);
     return means;
   }
-  // Returns the largest difference between the means of two quarters.
+  // Returns the largest difference between the means of two quarters of the interval.
   [[nodiscard]] double change(std::size_t axis) const {
     double least = all_.mean(axis), greatest = least;
     for (const Sums& quarter : quarters_)
@@ -83,9 +83,11 @@ StretchMean rest_of(const std::string& file, const EventReading& reading) {
   return mean;
 }
 
-// Notes that the mean that is subtracted holds some braking or a curve. Vibration has no mean.
+// Notes if the mean that is subtracted is not constant over its interval, because it then contains braking or a curve. Vibration does not
+// change it.
 void check_rest(const StretchMean& rest, RecordEvents& record) {
-  constexpr double k_still = 0.05 * k_gravity; // m/s²; 50 mg already shift the required pressure by 10 % (docs/evidence/recorders.md)
+  // largest change of the mean, m/s²; 50 mg already change the required pressure by 10 % (docs/evidence/recorders.md)
+  constexpr double k_still = 0.05 * k_gravity;
   for (std::size_t i = 0; i < record.recording.layout.axes.size(); ++i)
     if (const double change = rest.change(i); change > k_still)
       return record.missing.push_back({Evidence::unit,
@@ -95,13 +97,13 @@ void check_rest(const StretchMean& rest, RecordEvents& record) {
                                        "Name a stretch in which nothing moved."});
 }
 
-// Subtracts gravity from an axis of the record, which is known only after the columns have been read.
+// Subtracts gravity from the axis given by the user. The axes of a record are known only after its columns have been read.
 class WithoutGravity : public SampleSink {
 public:
   WithoutGravity(Conditioning conditioning, const EventReading& reading, SignalSink& sink)
       : conditioning_(conditioning), reading_(reading), sink_(sink) {}
   void begin(const RecordLayout& layout) override {
-    if (reading_.gravity && *reading_.gravity != "none" && !layout.is_peaks) { // for peaks see assumed_pulse.h
+    if (reading_.gravity && *reading_.gravity != "none" && !layout.is_peaks) { // assumed_pulse.h subtracts gravity from lists of peaks
       const bool is_turned = reading_.gravity->starts_with('-');
       const std::string axis = reading_.gravity->substr(is_turned ? 1 : 0);
       const auto found =
@@ -149,7 +151,7 @@ Conditioning conditioning_of(const EventReading& reading) {
   return conditioning;
 }
 
-// Reads the signal of a file and subtracts its offset: --gravity, or its reading at rest.
+// Reads the signal of a file and subtracts its offset: gravity along a given axis, or the reading at rest.
 Recording read_signal(const std::string& file, const EventReading& reading, WithoutGravity& first) {
   LineSource source(file);
   ReadOptions options = reading.read;
@@ -168,7 +170,7 @@ void refuse_gravity_as_shock(const RecordEvents& record) {
   }
 }
 
-// Returns the corner frequency of the recorder's own low-pass, if the lines above the rows give it, Hz; otherwise infinity.
+// Returns the corner frequency of the recorder's built-in low-pass filter, if the file's header gives it, Hz; otherwise infinity.
 double stated_low_pass(const RecordEvents& record) {
   LineSource source(record.file);
   std::vector<HeaderLine> lines;
@@ -177,14 +179,14 @@ double stated_low_pass(const RecordEvents& record) {
   return low_pass_of(metadata_of(lines)).value_or(std::numeric_limits<double>::infinity());
 }
 
-// Determines the clock time of time 0 of the record, if its start is given with date and time.
+// Sets the clock time at time 0 of the record, if the header gives date and time of its start.
 void read_clock(RecordEvents& record) {
   const RecordLayout& layout = record.recording.layout;
   std::string text = layout.time.start.substr(0, layout.time.start.find(" ("));
   const bool is_utc = text.ends_with(" UTC");
   if (is_utc) text.resize(text.size() - 4);
   const unsigned orders = possible_date_orders(text);
-  if (orders == 0 || (orders & (orders - 1)) != 0) return; // invalid or ambiguous
+  if (orders == 0 || (orders & (orders - 1)) != 0) return; // the date is invalid, or its order of day and month is ambiguous
   const auto stamp = parse_stamp(text, orders);
   if (!stamp || !stamp->has_date || !stamp->has_clock) return;
   record.clock_ns = stamp->ns;
@@ -205,7 +207,7 @@ std::optional<std::size_t> RecordEvents::axis(char letter) const {
 }
 
 std::string RecordEvents::axes() const {
-  if (pulse) return "xyz"; // axes missing in the list are zero
+  if (pulse) return "xyz"; // pulses have all three axes; missing ones are zero
   std::string letters;
   for (const AxisColumn& each : recording.layout.axes) letters += each.axis;
   return letters;
@@ -219,7 +221,8 @@ RecordEvents read_without_events(const std::string& file, const EventReading& re
   Conditioning conditioning = conditioning_of(reading);
   std::optional<StretchMean> rest;
   if (reading.rest) conditioning.offset = rest.emplace(rest_of(file, reading)).means();
-  constexpr double k_within = 0.25; // of a shock; before its begin and after its end less than this remains
+  // level of the record's begin and end, as a fraction of a shock; a larger signal there means a shock that was cut off
+  constexpr double k_within = 0.25;
   SignalWatch signal(k_within * shock_level(reading.rules));
   WithoutGravity first(conditioning, reading, signal);
   record.recording = read_signal(file, reading, first);

@@ -1,4 +1,5 @@
-// Reads a shock recorder's file and extracts its shocks as drive data: filtered windows without gravity, and a list of missing evidence.
+// Reads the file of a shock recorder and extracts its shocks as motions for models: filtered windows without gravity, and a list of missing
+// evidence.
 #pragma once
 
 #include "tools/assess/evidence.h"
@@ -18,7 +19,7 @@ namespace steplap::assess {
 /// Shape of an assumed pulse.
 enum class PulseShape { half_sine, haversine, triangle };
 
-/// Assumed shape of shocks of which only the peak is known.
+/// Pulse assumed for shocks of which only the peak is known.
 struct AssumedPulse {
   PulseShape shape = PulseShape::half_sine;
   std::optional<double> duration; ///< duration, s, for entries that give neither duration nor velocity change
@@ -29,18 +30,18 @@ struct AssumedPulse {
 struct EventReading {
   ReadOptions read;
   EventRules rules;
-  std::optional<double> frequency_class;     ///< Hz
-  std::optional<double> rate;                ///< sampling rate of the conditioned signal, Hz; none: that of the record
+  std::optional<double> frequency_class;     ///< class of the channel filter: frequency in Hz (CFC)
+  std::optional<double> rate;                ///< sampling rate of the conditioned signal, Hz; empty: that of the record
   std::optional<std::string> gravity;        ///< axis from which gravity is subtracted, "z", "-z", …; "none": it is not subtracted
   std::optional<std::array<double, 2>> rest; ///< s; the mean over this interval is subtracted
-  std::optional<AssumedPulse> pulse;         ///< for lists of peaks; none: they drive no model
+  std::optional<AssumedPulse> pulse;         ///< pulse for lists of peaks; without it such a list drives no model
 };
 
-/// A shock with its samples.
+/// A shock with the samples of its window.
 struct RecordedEvent {
   ShockEvent event;
   Window window;
-  bool is_below = false; ///< true if it stays below the requested threshold
+  bool is_below = false; ///< true if the shock stays below the requested threshold
 };
 
 /// Contents of a recorder's file.
@@ -48,31 +49,31 @@ struct RecordEvents {
   std::string file, sha256;
   Recording recording;
   EventRules rules;
-  std::array<double, 3> offset{};     ///< subtracted from the axes, m/s²
+  std::array<double, 3> offset{};     ///< values subtracted from the axes, m/s²
   double rate = 0.0, bandwidth = 0.0; ///< Hz, of the conditioned signal
   bool is_filtered = false;
   FallWatch fall;
-  std::vector<RecordedEvent> events; ///< in order of time
+  std::vector<RecordedEvent> events; ///< shocks found, in order of time
   std::array<double, 3> rest{};      ///< reading at rest of each axis, m/s²: mean over the interval of --rest, otherwise median of the
                                      ///< first second
   std::array<double, 3> greatest{};  ///< largest magnitude of each axis, filtered, m/s²
   std::vector<MissingEvidence> missing;
   std::optional<std::int64_t> clock_ns; ///< ns since 1970 at time 0 of the record; none if unknown
   bool clock_has_zone = false;
-  std::optional<AssumedPulse> pulse; ///< for lists of peaks that drive models
-  std::vector<std::string> assumed;  ///< assumptions made for such a list, as sentences
+  std::optional<AssumedPulse> pulse; ///< assumed pulse, for lists of peaks that drive models
+  std::vector<std::string> assumed;  ///< assumptions about the pulses, as sentences
 
-  /// Returns the letters of the axes of its events.
+  /// Returns the letters of the recorded axes, in the order of the event data.
   [[nodiscard]] std::string axes() const;
 
-  /// Returns the index of an axis in its events; nothing if the record lacks it.
+  /// Returns the index of an axis in the event data; nothing if it was not recorded.
   [[nodiscard]] std::optional<std::size_t> axis(char letter) const;
-  /// Returns the magnitude of the reading at rest over all axes, m/s².
+  /// Returns the magnitude of the vector of readings at rest, m/s².
   [[nodiscard]] double size_at_rest() const;
 };
 
-/// Reads a file without searching its waveform for events. Throws RecordError or FileError if it cannot be read or data is missing, if the
-/// reading at rest alone would exceed the threshold, or if a list of peaks lacks data for pulses.
+/// Reads a file without searching its waveform for events. Throws RecordError or FileError if the file cannot be read or lacks data, if the
+/// reading at rest exceeds the threshold, or if a list of peaks lacks data for pulses.
 [[nodiscard]] RecordEvents read_without_events(const std::string& file, const EventReading& reading);
 /// Reads a waveform file again and fills its events according to `rules`. Returns false, without events, if their total duration would
 /// exceed `longest`, s.
@@ -80,8 +81,8 @@ struct RecordEvents {
 /// Reads a file and its events, with the rules in `reading`.
 [[nodiscard]] RecordEvents read_events(const std::string& file, const EventReading& reading);
 
-/// Sorts records by time: by their clocks if all have one, otherwise in the given order. Throws FileError if two of them overlap. `note`
-/// receives a sentence about the criterion; "" for a single record. `is_known` becomes false if the clocks cannot be compared.
+/// Sorts records by their clocks, or leaves the given order if one has none. Throws FileError if two records overlap. `note` receives a
+/// sentence about the order; "" for a single record. `is_known` becomes false if the clocks are not comparable.
 void order_records(std::vector<RecordEvents>& records, std::string& note, bool& is_known);
 
 } // namespace steplap::assess

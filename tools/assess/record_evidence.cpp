@@ -13,14 +13,16 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_felt = 0.5; // of the threshold; constant values below it are no clipping, and values above it next to a gap indicate a
-                               // shock
+// fraction of the threshold: smaller constant values are not clipping; larger values at a gap indicate a shock in it
+constexpr double k_felt = 0.5;
 constexpr double k_least_band =
     49.0; // Hz; with 25 Hz the required pressure of a joint has errors up to 22 %, with 50 Hz up to 4 % (docs/evidence/recorders.md)
 constexpr double k_no_gravity = 0.02 * k_gravity, k_gravity_seen = 0.9 * k_gravity,
-                 k_gravity_most = 1.1 * k_gravity; // m/s²; magnitude at rest
-constexpr double k_offset = 0.1 * k_gravity;       // m/s²; 50 mg already shift the required pressure by 10 % (docs/evidence/recorders.md)
-constexpr double k_harmless_hole = 0.005;          // s; a shock within it has frequencies above 100 Hz, to which joints do not respond
+                 k_gravity_most = 1.1 * k_gravity; // magnitudes at rest without gravity, with gravity, and impossible ones, m/s²
+// largest tolerable offset, m/s²; 50 mg already change the required pressure by 10 % (docs/evidence/recorders.md)
+constexpr double k_offset = 0.1 * k_gravity;
+// longest harmless gap, s; a shock within it has frequencies above 100 Hz, to which joints do not respond
+constexpr double k_harmless_hole = 0.005;
 
 std::string in_g(double a) { return rounded_text(a / k_gravity, 3) + " g"; }
 
@@ -64,7 +66,7 @@ private:
   void find_clipped() {
     for (std::size_t i = 0; i < layout_.axes.size(); ++i) {
       const AxisFacts& axis = facts_.axes[i];
-      // Constant values near rest are no clipping, for example where a signal without noise begins.
+      // Constant values near rest are not clipping; they occur, for example, before a signal without noise.
       const bool is_flat_top = is_flat(axis, record_.rules.threshold) && !layout_.holds;
       if (axis.beyond_range.count == 0 && !is_flat_top) continue;
       return add(Evidence::clipped,
@@ -187,12 +189,11 @@ private:
   const SignalWatch& signal_;
 };
 
-// Returns the length, in samples, of the interval around sample `at` in which the linearly interpolated signal exceeds a fraction of its
-// value there.
+// Returns the width of the peak at sample `at`, in samples: the interval in which the interpolated signal exceeds `share` times the peak.
 double width_at(const std::vector<double>& a, std::size_t at, double share) {
   const double sign = a[at] < 0.0 ? -1.0 : 1.0, level = share * std::abs(a[at]);
   std::size_t from = at, to = at;
-  // A single sample below may be noise.
+  // The interval ends at two consecutive smaller samples, because one may be noise.
   while (from > 1 && (sign * a[from - 1] >= level || sign * a[from - 2] >= level)) --from;
   while (to + 2 < a.size() && (sign * a[to + 1] >= level || sign * a[to + 2] >= level)) ++to;
   const auto beyond = [&](std::size_t inside, std::size_t outside) {
@@ -208,13 +209,15 @@ double shock_level(const EventRules& rules) { return std::min(rules.threshold, E
 
 void find_missing_evidence(const AxisWatch& axes, const SignalWatch& signal, RecordEvents& record) { Finder(axes, signal, record).find(); }
 
-// Finds peaks whose top is too wide. The time above 0.9 of the peak is 0.43 of the width at half height for a half sine, 0.41 for a
-// haversine, 0.2 for a triangle; with noise of 2 % of the peak it exceeds 0.5 for one half sine in 500. A wider top indicates a sensor that
-// saturates, or braking and curves, which last longer.
+// Reports events whose peak has a flat top. The ratio of the width at 0.9 of the peak to that at 0.5 is 0.43 for a half sine, 0.41 for a
+// haversine and 0.2 for a triangle. With noise of 2 % of the peak, one half sine in 500 exceeds 0.5. A flatter top indicates a saturated
+// sensor, unless it is so long that it may be braking or a curve.
 void find_rounded_tops(const std::vector<RecordEvents>& records, std::vector<MissingEvidence>& missing) {
-  constexpr double k_wide = 0.5, k_longest = 0.3, k_near = 0.95; // fraction; s; of the record's extreme
-  constexpr double k_samples = 3.0;                              // above 0.9 of the peak; with fewer the width is not reliable
-  constexpr double k_seen = 0.25;                                // fraction of a shock; lower tops are not relevant
+  // largest ratio of the widths; longest top that is no braking, s; smallest fraction of the record's extreme
+  constexpr double k_wide = 0.5, k_longest = 0.3, k_near = 0.95;
+  // smallest number of samples above 0.9 of the peak for which the width is reliable
+  constexpr double k_samples = 3.0;
+  constexpr double k_seen = 0.25; // smallest top, as a fraction of the threshold
   const auto is_clipped = [](const MissingEvidence& m) { return m.item == Evidence::clipped; };
   for (const RecordEvents& record : records) {
     const RecordLayout& layout = record.recording.layout;
@@ -228,7 +231,7 @@ void find_rounded_tops(const std::vector<RecordEvents>& records, std::vector<Mis
         const std::vector<double>& a = e.window.plain[i];
         const auto found = std::max_element(a.begin(), a.end(), [](double x, double y) { return std::abs(x) < std::abs(y); });
         if (found == a.end() || std::abs(*found) < k_near * most) continue;
-        // A sensor at the end of its range reads its largest value; in a fall it reads zero.
+        // A saturated sensor reads near the largest value of the record; a falling one reads zero.
         const double read = *found + record.offset[i],
                      extreme = std::max(std::abs(record.recording.facts.axes[i].least), std::abs(record.recording.facts.axes[i].greatest));
         if (std::abs(read) < k_felt * extreme) continue;
@@ -263,7 +266,7 @@ bool is_ordinary_end(const std::string& remark) {
   for (const char c : text) {
     if (std::isalpha(static_cast<unsigned char>(c)) != 0) word += c;
     else take();
-    is_known &= static_cast<unsigned char>(c) < 0x80 && c != '\\' && c != '?'; // text in other alphabets, and bytes that are not text
+    is_known &= static_cast<unsigned char>(c) < 0x80 && c != '\\' && c != '?'; // text in other alphabets, or binary data
   }
   take();
   return is_known && (has_word || text.find_first_of("0123456789") == std::string::npos);

@@ -1,4 +1,4 @@
-// Finds evidence that a single record lacks for the decision "energise".
+// Finds evidence that a single record lacks for the decision "energise" (evidence.h).
 #pragma once
 
 #include "tools/assess/axis_watch.h"
@@ -7,11 +7,11 @@
 
 namespace steplap::assess {
 
-/// Returns the acceleration, m/s², below which nothing counts as a shock, whatever threshold the user chose.
+/// Returns the smallest acceleration of a shock, m/s²: the user's threshold, but at most the default one.
 [[nodiscard]] double shock_level(const EventRules& rules);
-/// Adds the evidence that is missing in a record, without regard to its events.
+/// Adds missing evidence that does not depend on the record's events.
 void find_missing_evidence(const AxisWatch& axes, const SignalWatch& signal, RecordEvents& record);
-/// Adds evidence for events whose peaks look clipped, although no sample value repeats.
+/// Adds missing evidence for events with flat tops, which look clipped although no sample value repeats.
 void find_rounded_tops(const std::vector<RecordEvents>& records, std::vector<MissingEvidence>& missing);
 /// Returns true if a comment or last line reports a normal end of recording and nothing else.
 [[nodiscard]] bool is_ordinary_end(const std::string& remark);

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<const char*, 10> k_numbers{"least_margin", "slid",       "overlap_left", "slips",  "lifts",
                                                 "comes_apart",  "acceptance", "planes_use",   "planes", "known_acceptance"};
 
-// Text that identifies everything on which a sample's outcome depends.
+// Returns a text of everything that affects the outcome of a sample.
 std::string scene_of(const SamplingOptions& options, const std::vector<DrivenModel>& models,
                      const std::vector<std::vector<DriveHistory>>& histories, const UncertainValues& uncertain) {
   std::string scene = "seed " + std::to_string(options.seed) + "\n";
@@ -83,7 +83,7 @@ SampleStore::SampleStore(const SamplingOptions& options, const std::vector<Drive
   try {
     store_ = std::make_unique<study::Store>(options.store, identity, study::StoreMode::run);
   } catch (const study::StoreError& error) {
-    if (error.helps().empty()) throw; // used by another process, or not writable
+    if (error.helps().empty()) throw; // restarting does not help if another process uses the file, or if it is not writable
     store_ = std::make_unique<study::Store>(options.store, identity, study::StoreMode::restart);
   }
 }

@@ -17,22 +17,22 @@ namespace steplap::assess {
 
 namespace {
 
-struct Runners {
+struct ThreadRunners {
   std::vector<std::unique_ptr<VoyageRunner>> of_models;
   const std::vector<std::vector<DriveHistory>>& histories; ///< indexed by model and event
   const std::vector<SharedFriction>& shared;
 };
 
-Runners runners_of(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
-                   const std::vector<SharedFriction>& shared, const UncertainValues& uncertain) {
-  Runners runners{{}, histories, shared};
+ThreadRunners runners_of(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
+                         const std::vector<SharedFriction>& shared, const UncertainValues& uncertain) {
+  ThreadRunners runners{{}, histories, shared};
   for (std::size_t m = 0; m < models.size(); ++m)
     runners.of_models.push_back(std::make_unique<VoyageRunner>(models[m], histories[m], uncertain.paths(m)));
   return runners;
 }
 
-// Evaluates shared frictions event by event, as far as all models were simulated.
-void judge_planes(const Runners& runners, const std::vector<VoyageOutcome>& outcomes, VoyageSummary& summary) {
+// Evaluates the shared frictions for the events that were simulated in all models.
+void judge_planes(const ThreadRunners& runners, const std::vector<VoyageOutcome>& outcomes, VoyageSummary& summary) {
   std::size_t events = outcomes.front().events_made;
   for (const VoyageOutcome& outcome : outcomes) events = std::min(events, outcome.events_made);
   SharedFrictions frictions(runners.shared);
@@ -49,7 +49,7 @@ void judge_planes(const Runners& runners, const std::vector<VoyageOutcome>& outc
   }
 }
 
-void run(Runners& runners, const UncertainValues& uncertain, VoyageSample& sample, const std::function<bool()>& stop) {
+void run(ThreadRunners& runners, const UncertainValues& uncertain, VoyageSample& sample, const std::function<bool()>& stop) {
   std::vector<VoyageOutcome> outcomes;
   for (std::size_t m = 0; m < runners.of_models.size(); ++m) {
     VoyageOutcome outcome = runners.of_models[m]->run(uncertain.numbers(m, sample.values), stop);
@@ -99,7 +99,7 @@ Verdict acceptance_of(const VoyageSummary& s, LimitsJudged limits) {
   return limits == LimitsJudged::all ? s.limits.outcome : s.known_limits.outcome;
 }
 
-// Collects samples as they finish. The complete initial sequence is stored every half second.
+// Collects samples from several threads and stores them. Only the samples up to the first missing one can be stored, every half second.
 class VoyageCourse {
 public:
   VoyageCourse(const SamplingOptions& options, SampleStore& store, std::vector<VoyageSample>& samples)
@@ -107,15 +107,15 @@ public:
     if (options_.progress) options_.progress(done_, options_.samples);
   }
 
-  /// number of samples in the complete initial sequence
+  /// Returns the number of samples before the first missing one.
   [[nodiscard]] long done() const { return done_; }
 
-  /// Computes sample n on any thread, unless stopped. Errors are reported by end().
+  /// Simulates sample n on the calling thread, unless the work was stopped. Exceptions are kept for end().
   void make(long n, const std::function<void(VoyageSample&, const std::function<bool()>&)>& run) {
     try {
       if (should_stop()) return;
       run(samples_[static_cast<std::size_t>(n)], [this] { return should_stop(); });
-      if (!should_stop()) add(n); // otherwise it may be incomplete
+      if (!should_stop()) add(n); // an interrupted voyage is discarded
     } catch (...) {
       const std::scoped_lock lock(mutex_);
       if (!failure_) failure_ = std::current_exception();
@@ -123,7 +123,7 @@ public:
     }
   }
 
-  /// Stores the rest. Throws errors of the threads, or NumericalFailure if stopped.
+  /// Stores the remaining samples. Throws exceptions of the threads, and NumericalFailure if stopped.
   void end() {
     keep();
     if (failure_) std::rethrow_exception(failure_);
@@ -174,7 +174,7 @@ private:
 
 VoyageSample voyage_with(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
                          const UncertainValues& uncertain, const std::vector<double>& values, const std::vector<SharedFriction>& shared) {
-  Runners runners = runners_of(models, histories, shared, uncertain);
+  ThreadRunners runners = runners_of(models, histories, shared, uncertain);
   VoyageSample sample;
   sample.values = values;
   run(runners, uncertain, sample, {});
@@ -189,7 +189,7 @@ std::vector<VoyageSample> sample_voyages(const std::vector<DrivenModel>& models,
   for (std::size_t n = 0; n < samples.size(); ++n) samples[n].values = uncertain.draw(options.seed, n + 1);
   SampleStore store(options, models, histories, uncertain);
   VoyageCourse course(options, store, samples);
-  std::vector<Runners> teams; // compiled by one thread, because models are read and completed here
+  std::vector<ThreadRunners> teams; // created by one thread, because reading and completing models is not thread-safe
   for (int i = 0; i < threads; ++i) teams.push_back(runners_of(models, histories, shared, uncertain));
     // Samples are distributed singly, so that threads do not wait for the longest voyage of a batch.
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
@@ -217,7 +217,7 @@ Probability slip_probability(const std::vector<VoyageSample>& samples, std::size
 Probability damage_probability(const std::vector<VoyageSample>& samples, LimitsJudged limits) {
   long damaged = 0, unknown = 0;
   for (const VoyageSample& sample : samples) {
-    if (is_damaged(sample.summary, limits)) ++damaged; // damage remains damage, whatever happened afterwards
+    if (is_damaged(sample.summary, limits)) ++damaged; // counts even if the voyage could not be completed afterwards
     else if (!sample.summary.unknown.empty() || acceptance_of(sample.summary, limits) == Verdict::open ||
              sample.summary.planes != Verdict::hold)
       ++unknown;

@@ -16,9 +16,9 @@ namespace steplap::assess {
 
 /// A voyage with one set of sampled values.
 struct VoyageSample {
-  std::vector<double> values; ///< of the uncertain numbers
+  std::vector<double> values; ///< values of all uncertain numbers
   VoyageSummary summary;      ///< worst over all models
-  std::vector<char> slips;    ///< per event of model 0, then of model 1, …
+  std::vector<char> slips;    ///< true if a joint slipped: first all events of model 0, then those of model 1, …
 };
 
 /// Options of the sampling.
@@ -28,7 +28,7 @@ struct SamplingOptions {
   int threads = 0;   ///< 0: OMP_NUM_THREADS if set, otherwise the number of processors
   std::string store; ///< name of the sample file; "": none
   std::function<void(long done, long all)> progress;
-  std::function<std::string()> stop; ///< polled; a text other than "" stops the work and becomes the reason
+  std::function<std::string()> stop; ///< called repeatedly; a non-empty text stops the work and becomes its reason
 };
 
 /// A probability with its 95 % confidence interval (Clopper and Pearson). Runs without a result count as harmless for the lower bound and
@@ -51,13 +51,14 @@ struct Probability {
 /// Returns the probability that a joint slips in this event of this model.
 [[nodiscard]] Probability slip_probability(const std::vector<VoyageSample>& samples, std::size_t model, std::size_t event,
                                            std::size_t events);
-/// Which limits of the models count: all, or only those that are not assumed.
+/// Limits to be considered: all limits, or only those that are not assumed.
 enum class LimitsJudged { all, known };
-/// Returns the probability that in the voyage a joint slips or an acceptance is not met.
+/// Returns the probability that a joint slips or a limit of an [[acceptance]] is exceeded during the voyage.
 [[nodiscard]] Probability damage_probability(const std::vector<VoyageSample>& samples, LimitsJudged limits = LimitsJudged::all);
 /// Returns true if the summary contains damage: a slip or an acceptance that is not met.
 [[nodiscard]] bool is_damaged(const VoyageSummary& summary, LimitsJudged limits = LimitsJudged::all);
-/// Returns for each uncertain number the square of its rank correlation with the smallest margin, 0 to 1. Empty without samples.
+/// Returns the influence of each uncertain number: the square of its rank correlation with the smallest margin, 0 to 1. Empty without
+/// samples.
 [[nodiscard]] std::vector<double> shares_of(const std::vector<VoyageSample>& samples);
 
 } // namespace steplap::assess

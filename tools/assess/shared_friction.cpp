@@ -32,14 +32,14 @@ struct Compiled {
   }
 };
 
-// Returns the letter of the record's axis along a direction of the model; ' ' if there is none.
+// Returns the record's axis along a direction of the model, 'x', 'y' or 'z'; ' ' if none is parallel.
 char letter_along(const DrivenModel& model, const Vec2& direction) {
   const Vec2 x = rotated(Vec2(1.0, 0.0), model.marker_angle);
   const std::string& axis = std::abs(x.dot(direction)) >= std::abs(cross(x, direction)) ? model.recorder.x : model.recorder.y;
   return axis == "none" ? ' ' : axis.back();
 }
 
-// Returns the bodies that an element names directly or by markers; adds the ground if there is only one.
+// Returns the bodies that an element connects. The ground is added if it names only one.
 std::set<std::string> bodies_of(const ElementEntry& entry, const std::map<std::string, std::string>& body_of_marker) {
   std::set<std::string> bodies;
   const auto add = [&](const std::string& name) {
@@ -56,14 +56,14 @@ std::set<std::string> bodies_of(const ElementEntry& entry, const std::map<std::s
   return bodies;
 }
 
-// Returns true for loads and drives, which hold nothing.
+// Returns true for loads and drives, which cannot hold a body.
 bool is_action_from_outside(const Element& element) {
   return dynamic_cast<const Load*>(&element) || dynamic_cast<const FormulaForce*>(&element) ||
          dynamic_cast<const PrescribedMotion*>(&element);
 }
 
-// Returns the elements, other than `own`, that hold the load on these frictions. The load is the set of bodies connected with the body on
-// the friction, up to the supporting body, the driven body and the ground.
+// Returns the elements, other than `own`, that hold the load which rests on these frictions. The load consists of all bodies connected with
+// the body on the friction, without the supporting body, the driven body and the ground.
 std::vector<std::string> holders_of(const DrivenModel& model, const Compiled& compiled, const std::vector<std::string>& own) {
   const Model& whole = compiled.whole;
   std::map<std::string, std::string> body_of_marker;
@@ -129,7 +129,7 @@ std::optional<PlaneOfFriction> plane_of(std::size_t index, const DrivenModel& mo
   return plane;
 }
 
-// Adds the elements to the traced ones and returns their indices there.
+// Adds the elements to `model.traced` and returns their indices in it.
 std::vector<std::size_t> trace(DrivenModel& model, const std::vector<std::string>& elements) {
   std::vector<std::size_t> places;
   for (const std::string& element : elements) {
@@ -170,16 +170,16 @@ std::vector<SharedFriction> find_shared_frictions(std::vector<DrivenModel>& mode
 // --- evaluation of an event -------------------------------------------------------------------------
 
 struct SharedFrictionCourse::Instant {
-  std::array<double, 2> force{}; ///< in each model, N
-  std::array<double, 2> pull{};  ///< acceleration that friction must give to the load, m/s²
+  std::array<double, 2> force{}; ///< friction force in each model, N
+  std::array<double, 2> pull{};  ///< acceleration of the load that friction must provide, m/s²
   std::array<bool, 2> sticks{};
-  double normal = 0.0; ///< in both planes together, N
+  double normal = 0.0; ///< normal force on the contact, from both models, N
 };
 
 namespace {
 
 double at(const std::vector<double>& values, double place) {
-  if (values.empty() || place >= static_cast<double>(values.size() - 1)) return 0.0; // after the end of the record
+  if (values.empty() || place >= static_cast<double>(values.size() - 1)) return 0.0; // zero after the last sample
   const auto i = static_cast<std::size_t>(place);
   return values[i] + (place - static_cast<double>(i)) * (values[i + 1] - values[i]);
 }
@@ -213,7 +213,7 @@ std::vector<SharedFrictionCourse::Instant> SharedFrictionCourse::instants(const 
 
 void SharedFrictionCourse::slide(const std::vector<Instant>& instants, const std::array<SampledFriction, 2>& traces, bool goes_on,
                                  SharedPassage& passage) {
-  // Fits T = m a over sticking intervals by least squares, including the sign of T for positive a.
+  // Fits T = m a by least squares over the intervals of sticking. The sign of T for positive a is determined, too.
   double mass_sum = 0.0, squares = 0.0;
   std::array<double, 2> sign{};
   for (std::size_t p = 0; p < 2; ++p) {
@@ -254,7 +254,7 @@ SharedPassage SharedFrictionCourse::pass(const std::array<SampledFriction, 2>& t
                                          const std::array<const DriveHistory*, 2>& histories) {
   SharedPassage passage;
   passage.slid_total = slid_total_;
-  if (traces[0].force.empty() || traces[1].force.empty()) return passage; // a failed run reports its reason itself
+  if (traces[0].force.empty() || traces[1].force.empty()) return passage; // a run failed, which is reported there
   if (!contact_)
     contact_ = {friction_.name, {&friction_.planes[0], &friction_.planes[1]}, {traces[0].normal.front(), traces[1].normal.front()}};
   passage.disagreement = contact_->disagreement();

@@ -1,10 +1,11 @@
-// Combines the friction of two models that show one machine in different planes and rest on the same friction contact.
+// Friction contact on which both models of a machine rest, each in its own plane.
 //
-// They share elements as elements/views/friction_plane.h says, which defines the use of the friction, if the record's axes along them differ.
+// Models share friction elements by name (elements/views/friction_plane.h, which defines their combined utilisation). The record's axes
+// along them must differ.
 //
-// If both planes together slip, a point mass is integrated in the plane of the contact (sliding_point.h). Its driving force is the force
-// that the machine exerts on the contact: -T_i while plane i sticks, otherwise -m a_i from the record (including gravity along the slope).
-// m is the best fit of T_i = m a_i over the intervals of sticking, at most the weight on the contact. The slide is the length of the
+// If the combined load causes slip, a point mass is integrated in the plane of the contact (sliding_point.h). The force that drives it is
+// the force of the machine on the contact: −T_i while plane i sticks, otherwise −m a_i from the record, including gravity along the slope.
+// m is fitted to T_i = m a_i over the intervals of sticking, and is at most the weight on the contact. The slide is the length of the
 // point's path. It is an upper bound if other elements hold the load (ropes, stops, other frictions), because the point ignores them, or if
 // a part lifts. Rotation about the vertical axis is not modelled.
 #pragma once
@@ -21,39 +22,40 @@
 
 namespace steplap::assess {
 
-/// A shared friction in one of the models.
+/// The part of a shared friction that one model computes.
 struct PlaneOfFriction : FrictionPlane {
-  std::size_t model = 0;            ///< index
-  std::vector<std::size_t> traces;  ///< indices into DrivenModel::traced; the friction is their sum
+  std::size_t model = 0;            ///< index of the model
+  std::vector<std::size_t> traces;  ///< indices into DrivenModel::traced; the friction force is the sum over them
   std::vector<std::string> holders; ///< other elements that hold the load
   struct Limit {
     std::string name;
-    double most = 0.0; ///< m
+    double most = 0.0; ///< largest permitted slide, m
     Verdict consequence = Verdict::inspect;
-    bool is_assumed = false; ///< (assumed_limits.h)
+    bool is_assumed = false; ///< true if the limit is assumed (assumed_limits.h)
   };
   std::vector<Limit> limits; ///< [[acceptance]] limits of the slide
 };
 
-/// A friction shared by two models.
+/// A friction contact shared by two models.
 struct SharedFriction {
   std::string name;
   std::array<PlaneOfFriction, 2> planes;
 };
 
-/// Finds the shared frictions and sets `traced` of the models. Throws ModelError if elements to be summed do not act along the same line.
+/// Finds the shared frictions of all models and sets their `traced`. Throws ModelError if elements with forces to be summed do not act
+/// along the same line.
 [[nodiscard]] std::vector<SharedFriction> find_shared_frictions(std::vector<DrivenModel>& models);
 
-/// Result of an event for a shared friction.
+/// Result of one event for a shared friction.
 struct SharedPassage : SharedUse {
-  std::size_t friction = 0; ///< index
-  double slid = 0.0;        ///< length of the point's path in this event, m; infinite if it does not come to rest
+  std::size_t friction = 0; ///< index of the shared friction
+  double slid = 0.0;        ///< length of the path during this event, m; infinite if the point does not come to rest
   double slid_total = 0.0;  ///< sum over all events so far, m
-  std::string bound;        ///< if not empty: reason why the path is an upper bound
-  std::string disagreement; ///< if not empty: contradiction that shows that the models are not of one machine
+  std::string bound;        ///< reason why the path is an upper bound; "" if it is not
+  std::string disagreement; ///< contradiction between the models, which cannot show the same machine then; "" if there is none
 };
 
-/// State of a shared friction during the voyage.
+/// A shared friction during the voyage: keeps the state between its events.
 class SharedFrictionCourse {
 public:
   explicit SharedFrictionCourse(const SharedFriction& friction) : friction_(friction) {}
@@ -68,7 +70,7 @@ private:
   void slide(const std::vector<Instant>& instants, const std::array<SampledFriction, 2>& traces, bool goes_on, SharedPassage& passage);
 
   const SharedFriction& friction_;
-  std::optional<SharedContact> contact_; ///< with the normal forces at the begin of the voyage
+  std::optional<SharedContact> contact_; ///< contact with the normal forces at the begin of the voyage
   Vec2 velocity_ = Vec2::Zero();         ///< velocity at the end of the previous event, m/s
   double slid_total_ = 0.0;
 };
@@ -86,7 +88,7 @@ private:
   std::vector<SharedFrictionCourse> courses_;
 };
 
-/// Adds a result to the summary used by criteria. `number` is that of the event, from 1.
+/// Merges a result into the summary to which the criteria are applied. `number`: that of the event, from 1.
 void add_to(VoyageSummary& summary, const SharedFriction& friction, const SharedPassage& passage, std::size_t number);
 /// Returns the assumptions of this calculation as sentences.
 [[nodiscard]] std::vector<std::string> assumptions_of(const std::vector<SharedFriction>& frictions);

@@ -9,11 +9,12 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_edge = 0.05;             // s; half a period of 10 Hz, so that an end at a zero crossing is seen, and 3 samples at least
-constexpr std::size_t k_least_edge = 3;     // samples; a single one may be a zero crossing
-constexpr double k_near = 0.5;              // s; compared with the end
-constexpr double k_rises = 5.0;             // times the largest value next to it: more than noise does
-constexpr double k_felt = 0.05 * k_gravity; // m/s²; less is no begin of a shock
+// length of the inspected ends, s: half a period of 10 Hz, so that a zero crossing at the end does not hide a shock
+constexpr double k_edge = 0.05;
+constexpr std::size_t k_least_edge = 3;     // smallest length, samples; a single one may be a zero crossing
+constexpr double k_near = 0.5;              // length of the interval next to an end, to which it is compared, s
+constexpr double k_rises = 5.0;             // ratio of the largest values in both that noise does not reach
+constexpr double k_felt = 0.05 * k_gravity; // smallest magnitude of a shock at an end, m/s²
 
 } // namespace
 
@@ -40,7 +41,7 @@ void SignalWatch::end_segment() {
   inspect(false);
 }
 
-// Returns the largest magnitude of the kept samples from `from` to before `to`, counted from the oldest.
+// Returns the largest magnitude of samples number `from` to `to` − 1 in the buffer, counted from the oldest.
 double SignalWatch::largest(std::size_t axis, std::size_t from, std::size_t to) const {
   const std::size_t oldest = samples_ - std::min(samples_, near_);
   double most = 0.0;

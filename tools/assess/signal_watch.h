@@ -13,13 +13,14 @@ namespace steplap::assess {
 /// Receives the conditioned signal.
 class SignalWatch : public SignalSink {
 public:
-  /// A segment begins or ends during a shock if its first or last 50 ms exceed `level`, m/s², or are far above what is next to them.
+  /// A record begins or ends during a shock if the first or last 50 ms of a segment exceed `level`, m/s², or are at least five times as
+  /// large as the half second next to them.
   explicit SignalWatch(double level) : level_(level) {}
 
   /// A begin or end of a segment during a shock.
   struct End {
     bool is_begin = true;
-    double t = 0.0, value = 0.0; ///< s; m/s², largest value near the end
+    double t = 0.0, value = 0.0; ///< time of the end, s; largest value near it, m/s²
     char axis = 'x';
     std::size_t count = 0; ///< number of such ends in the record; 0: none
   };
@@ -38,10 +39,10 @@ private:
   void inspect(bool is_begin);
   double level_;
   std::size_t axes_ = 0;
-  std::size_t edge_ = 0, near_ = 0; ///< samples: at an end; at an end and next to it
+  std::size_t edge_ = 0, near_ = 0; ///< lengths in samples: of an end; of an end and the interval next to it
   std::array<char, 3> letters_{};
   std::array<double, 3> greatest_{};
-  std::vector<std::array<double, 3>> last_; ///< the last near_ samples of the segment, as a ring
+  std::vector<std::array<double, 3>> last_; ///< ring buffer of the last `near_` samples of the segment
   std::size_t samples_ = 0;
   double begin_ = 0.0, t_ = 0.0;
   End end_;

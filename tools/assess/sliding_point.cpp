@@ -7,7 +7,7 @@
 
 namespace steplap::assess {
 
-// A load that changes linearly from one value to another.
+// An interval in which the load changes linearly.
 struct SlidingPoint::Piece {
   const PointLoad &begin, &end;
   double duration;
@@ -21,7 +21,7 @@ SlidingPoint::SlidingPoint(double mass, double mu_static, double mu_kinetic, dou
     : mass_(mass), mu_static_(mu_static), mu_kinetic_(mu_kinetic), largest_step_(largest_step), velocity_(velocity),
       rests_(velocity == Vec2::Zero()) {}
 
-// Returns the first time after `from` at which |D| exceeds mu_s N; infinity if there is none in this piece.
+// Returns the first time after `from` at which |D| exceeds μ_s N; infinity if there is none in this interval.
 double SlidingPoint::onset(const Piece& piece, double from) const {
   const PointLoad load = piece.at(from);
   const Vec2 rate = (piece.end.drive - piece.begin.drive) / piece.duration;
@@ -47,9 +47,10 @@ std::optional<double> SlidingPoint::time_to_stop(const PointLoad& load) const {
   return mass_ * (load.drive.dot(velocity_) + c * velocity_.norm()) / ((c - d) * (c + d));
 }
 
-// A slow point under a transverse force changes direction quickly, at the rate |v × D| / (m v²).
+// Returns a step that limits the rotation of the velocity, whose rate is |v × D|/(m v²), to 0.03 rad.
 double SlidingPoint::step_for(const PointLoad& load) const {
-  constexpr double k_turn = 0.03, k_least = 1e-4; // rad per step; of the largest step, because a reversing point has no direction
+  // rad per step; smallest fraction of the largest step, needed because the direction is undefined when the point reverses
+  constexpr double k_turn = 0.03, k_least = 1e-4;
   const double turning = std::abs(cross(velocity_, load.drive)), square = mass_ * velocity_.squaredNorm();
   if (!(turning * largest_step_ > k_turn * square) || square == 0.0) return largest_step_;
   return std::max(k_least * largest_step_, k_turn * square / turning);
@@ -69,7 +70,7 @@ void SlidingPoint::stop(const PointLoad& load, double after) {
 }
 
 void SlidingPoint::step(const Piece& piece, double from, double h) {
-  constexpr double k_gamma = 0.43586652150845899942; // root of γ³ - 3 γ² + 3 γ / 2 = 1/6
+  constexpr double k_gamma = 0.43586652150845899942; // coefficient γ of the method: root of γ³ − 3 γ² + 3 γ/2 = 1/6
   constexpr double k_b1 = -0.25 * (6.0 * k_gamma * k_gamma - 16.0 * k_gamma + 1.0),
                    k_b2 = 0.25 * (6.0 * k_gamma * k_gamma - 20.0 * k_gamma + 5.0);
   constexpr std::array<double, 3> k_node{k_gamma, 0.5 * (1.0 + k_gamma), 1.0}, k_weight{k_b1, k_b2, k_gamma};

@@ -28,16 +28,17 @@ struct PointLoad {
   double normal = 0.0;       ///< normal force, N, ≥ 0
 };
 
-/// Integrates the motion of the point.
+/// A point mass on a rough plane, at rest or sliding.
 class SlidingPoint {
 public:
-  /// Requires `mass` > 0 and `mu_kinetic` <= `mu_static`. `largest_step` limits the integration steps, s. If `velocity` is not zero, the
-  /// point slides from the start.
+  /// Preconditions: `mass` > 0 kg, `mu_kinetic` ≤ `mu_static`. `largest_step` limits the integration steps, s. With a non-zero `velocity`,
+  /// m/s, the point slides from the start.
   SlidingPoint(double mass, double mu_static, double mu_kinetic, double largest_step = 1e-4, const Vec2& velocity = Vec2::Zero());
 
   /// Advances by `duration`, s, while the load changes linearly from `begin` to `end`.
   void advance(const PointLoad& begin, const PointLoad& end, double duration);
-  /// Advances under a constant load until the point stops. Returns false, without a change, if it would never stop.
+  /// Advances under a constant load until the point stops. Returns false, without a change, if the load exceeds the friction, so that it
+  /// never stops.
   [[nodiscard]] bool come_to_rest(const PointLoad& load);
 
   [[nodiscard]] double time() const { return time_; }
@@ -45,8 +46,8 @@ public:
   [[nodiscard]] const Vec2& velocity() const { return velocity_; }
   [[nodiscard]] double path() const { return path_; } ///< length of the path, m
   [[nodiscard]] bool rests() const { return rests_; }
-  [[nodiscard]] std::optional<double> first_slip() const { return first_slip_; } ///< s
-  [[nodiscard]] std::optional<double> last_rest() const { return last_rest_; }   ///< time at which it last came to rest, s
+  [[nodiscard]] std::optional<double> first_slip() const { return first_slip_; } ///< time of the first onset of sliding, s
+  [[nodiscard]] std::optional<double> last_rest() const { return last_rest_; }   ///< time at which the point last came to rest, s
 
 private:
   struct Piece;

@@ -17,7 +17,7 @@ OrderedJson limit_json(const StaticRay& ray, std::size_t i) {
   const StaticLimit& limit = ray.limits[i];
   return {{"kind", name_of(limit.kind)},
           {"element", limit.element},
-          {"text", limit_words(ray, i)},
+          {"text", limit_text(ray, i)},
           {"acceleration", number(limit.acceleration)},
           {"error", number(limit.error)}};
 }
@@ -83,7 +83,7 @@ OrderedJson direction_json(const StaticDirection& one) {
                       {"limits", OrderedJson::array()}};
   if (!one.ray.limits.empty()) {
     const StaticLimit& first = one.ray.limits.front();
-    json["first"] = limit_words(one.ray, 0);
+    json["first"] = limit_text(one.ray, 0);
     json["kind"] = name_of(first.kind);
     json["element"] = first.element;
     json["acceleration"] = number(first.acceleration);

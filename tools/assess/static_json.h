@@ -1,4 +1,4 @@
-// Writes the result of static proofs as static.json, for the page and for programs. SI units; directions in degrees.
+// Writes the results of static proofs as static.json, which the page and scripts read. SI units; directions in degrees.
 #pragma once
 
 #include "tools/assess/static_proof.h"

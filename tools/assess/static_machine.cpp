@@ -17,7 +17,8 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_beyond = -1e-3; // reserve of friction that has slid during loading; by how much the limit was exceeded is not known
+// reserve reported for friction that has slid during loading; the amount by which its limit was exceeded is unknown
+constexpr double k_beyond = -1e-3;
 
 int channel_index(const System& system, const std::string& name) {
   for (std::size_t i = 0; i < system.channels.size(); ++i)
@@ -55,7 +56,7 @@ StaticMachine::StaticMachine(const LoadedModel& loaded)
   std::fill(at_rest_.rest->state.v.begin(), at_rest_.rest->state.v.end(), 0.0);
   at_rest_.values = values_at_rest(*system_, at_rest_.rest->state);
   find_watches();
-  at_rest_.left = left_of(at_rest_);
+  at_rest_.left = reserves_of(at_rest_);
 }
 
 void StaticMachine::find_watches() {
@@ -71,7 +72,7 @@ void StaticMachine::find_watches() {
     if (dynamic_cast<const StepLapJoint*>(entry.element.get())) {
       step_lap.insert(name);
       const int usage = channel_index(*system_, name + ".u");
-      if (usage < 0) continue; // it holds any load
+      if (usage < 0) continue; // the joint has unlimited capacity
       joints_.push_back(name);
       add(LimitKind::slips, name, usage, -1);
       continue;
@@ -89,7 +90,7 @@ void StaticMachine::find_watches() {
   }
 }
 
-std::vector<double> StaticMachine::left_of(const Probe& probe) const {
+std::vector<double> StaticMachine::reserves_of(const Probe& probe) const {
   std::vector<double> left(watches_.size(), 1.0);
   for (std::size_t w = 0; w < watches_.size(); ++w) {
     if (channel_[w] >= 0) {
@@ -106,7 +107,7 @@ std::vector<double> StaticMachine::left_of(const Probe& probe) const {
 }
 
 Probe StaticMachine::probe(const State& start, const Vec2& pull) {
-  struct Restored { // restores the machine in every case
+  struct Restored { // restores gravity at the end of the scope, also after an exception
     System& system;
     Vec2 gravity;
     ~Restored() { system.gravity = gravity; }
@@ -125,7 +126,7 @@ Probe StaticMachine::probe(const State& start, const Vec2& pull) {
     }
     probe.values = values_at_rest(*system_, found.state);
     probe.rest = std::move(found);
-    probe.left = left_of(probe);
+    probe.left = reserves_of(probe);
   } catch (const RunStopped&) {
     throw;
   } catch (const NumericalFailure& failure) {
@@ -140,7 +141,7 @@ Probe StaticMachine::ramped(const Vec2& pull) { return probe(at_rest_.rest->stat
 
 Probe StaticMachine::ramped_from(const Probe& before, const Vec2& pull) { return probe(before.rest->state, pull); }
 
-Probe StaticMachine::worked_loose(const Vec2& pull) {
+Probe StaticMachine::without_friction(const Vec2& pull) {
   State loose = at_rest_.rest->state;
   for (std::size_t w = 0; w < watches_.size(); ++w)
     if (watches_[w].kind == LimitKind::slides) loose.friction[static_cast<std::size_t>(friction_[w])].phase = FrictionPhase::apart;

@@ -28,20 +28,21 @@ enum class LimitKind {
 /// Returns "slips", "slides", "lifts" or "ends".
 [[nodiscard]] const char* name_of(LimitKind kind);
 
-/// A possible limit that is monitored while a pull grows.
+/// A limit that is monitored while the pull grows.
 struct Watch {
   LimitKind kind = LimitKind::slips;
   std::string element;
 };
 
-/// An equilibrium under a pull, or the reason why there is none.
+/// Result of the search for an equilibrium under one pull: an equilibrium, or the reason why there is none.
 struct Probe {
   std::optional<Equilibrium> rest;
-  std::string failure;        ///< sentence, if there is no equilibrium
-  bool is_unknown = false;    ///< true if the search failed without showing that no equilibrium exists
-  std::vector<double> left;   ///< reserve of each watch: positive below its limit, zero at it; for linear statics convex or linear in the
-                              ///< pull
-  std::vector<double> values; ///< of System::channels
+  std::string failure;     ///< sentence why there is no equilibrium
+  bool is_unknown = false; ///< true if the search failed without proving that no equilibrium exists
+  /// reserve of each monitored limit: 1 − utilisation, or contact force relative to that at rest; positive below the limit; for linear
+  /// statics a concave or linear function of the pull
+  std::vector<double> left;
+  std::vector<double> values; ///< values of all channels
 };
 
 /// A model prepared for statics under different pulls.
@@ -58,27 +59,26 @@ public:
   /// Returns the step-lap joints with finite friction capacity.
   [[nodiscard]] const std::vector<std::string>& joints() const { return joints_; }
 
-  /// Increases the pull from zero, starting from the equilibrium under gravity alone.
+  /// Returns the equilibrium under `pull`, m/s², which grows from zero. Starts from the equilibrium under gravity alone.
   [[nodiscard]] Probe ramped(const Vec2& pull);
-  /// Increases the pull from the equilibrium `before`, which belongs to another pull.
+  /// As ramped(), but starts from the equilibrium `before` under another pull.
   [[nodiscard]] Probe ramped_from(const Probe& before, const Vec2& pull);
-  /// Finds the equilibrium if friction along lines and about pins carries nothing, as after long vibration. Friction of joints in the plane
-  /// holds.
-  [[nodiscard]] Probe worked_loose(const Vec2& pull);
+  /// Returns the equilibrium without friction along lines and about pins, as after long vibration. Friction of joints in the plane holds.
+  [[nodiscard]] Probe without_friction(const Vec2& pull);
   /// Returns the value of a channel; NaN if there is none of that name.
   [[nodiscard]] double value(const Probe& probe, const std::string& channel) const;
 
 private:
   void find_watches();
   Probe probe(const State& start, const Vec2& pull);
-  [[nodiscard]] std::vector<double> left_of(const Probe& probe) const;
+  [[nodiscard]] std::vector<double> reserves_of(const Probe& probe) const;
 
   Model model_;
   std::unique_ptr<System> system_;
   Vec2 gravity_;
   Probe at_rest_;
   std::vector<Watch> watches_;
-  std::vector<int> channel_, friction_; ///< of each watch; −1: none
+  std::vector<int> channel_, friction_; ///< index of channel and friction of each watch; −1: none
   std::vector<double> rest_gap_;        ///< penetration of each watched contact at rest, m
   std::vector<std::string> joints_;
 };

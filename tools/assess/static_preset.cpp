@@ -12,10 +12,10 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_g = 9.81;   // m/s², as in models: 1 g upwards then cancels exactly the weight
-constexpr double k_most = 1e4; // m/s²; larger values are mistakes
+constexpr double k_g = 9.81;   // 1 g, m/s²; equal to the models' gravity, so that 1 g upwards cancels the weight exactly
+constexpr double k_most = 1e4; // largest value accepted, m/s²
 
-// Returns loads of size a along the axes and halfway between.
+// Returns eight loads of magnitude a, m/s²: along the axes and at 45° between them.
 std::vector<StaticLoad> all_round(double a) {
   const double half = a * std::sqrt(0.5);
   return {
@@ -23,8 +23,8 @@ std::vector<StaticLoad> all_round(double a) {
       {"back", {-a, 0.0}, ""},   {"back and down", {-half, -half}, ""}, {"down", {0.0, -a}, ""}, {"forward and down", {half, -half}, ""}};
 }
 
-// Returns the loads of a road transport. Those of 0.6 g are for tipping, but are applied to every load, because which loads may tip is not
-// known in advance. A load that slides between 0.5 g and 0.6 g is therefore judged on the safe side.
+// Returns the loads of road transport. The standard requires 0.6 g only for loads that may tip. It is applied to all loads, because these
+// are not known in advance; this is conservative for sliding.
 std::vector<StaticLoad> road() {
   return {{"forward", {0.8 * k_g, 0.0}, "lengthwise"},
           {"back", {-0.5 * k_g, 0.0}, "lengthwise"},
@@ -34,10 +34,9 @@ std::vector<StaticLoad> road() {
           {"tipping to the left", {-0.6 * k_g, 0.0}, "transverse"}};
 }
 
-// Returns the loads of a sea transport: the largest value of the table for each axis; the ship's heave reduces the weight, increases it, or
-// is zero.
+// Returns the loads of sea transport: the largest value of the table for each axis, with the ship's heave upwards, downwards and zero.
 std::vector<StaticLoad> sea() {
-  constexpr double k_along = 3.8, k_across = 7.4, k_up = 9.2; // m/s²
+  constexpr double k_along = 3.8, k_across = 7.4, k_up = 9.2; // largest accelerations along, across and normal to the ship's deck, m/s²
   std::vector<StaticLoad> loads;
   for (const bool is_along : {true, false})
     for (const double side : {1.0, -1.0})

@@ -11,19 +11,19 @@
 
 namespace steplap::assess {
 
-/// Section of the machine that a model shows.
+/// Vertical plane of the vehicle in which a model lies: along or across it.
 enum class Plane { lengthwise, transverse };
 /// Returns "lengthwise" or "transverse".
 [[nodiscard]] const char* name_of(Plane plane);
 
-/// One load.
+/// One load case: a constant pull.
 struct StaticLoad {
   std::string name;         ///< "forward"
-  Vec2 pull = Vec2::Zero(); ///< in addition to gravity, m/s²
-  std::string plane;        ///< plane of the models to which it applies; "" for both
+  Vec2 pull = Vec2::Zero(); ///< pull, m/s², in addition to gravity
+  std::string plane;        ///< plane of the models to which the load applies; "" if it applies to both
 };
 
-/// Loads with their source.
+/// A named set of loads with its source.
 struct StaticPreset {
   std::string name, source;
   std::vector<StaticLoad> loads;

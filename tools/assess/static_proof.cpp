@@ -19,14 +19,14 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_close = 1e-6;      // of a margin; accuracy of an equilibrium
-constexpr double k_at_bound = 0.98;   // utilisation from which friction counts as sliding; forces are asked for to 2 %
-constexpr double k_just_below = 1e-3; // distance below the first limit of a direction, relative, at which the other ways are computed
+constexpr double k_close = 1e-6;      // relative accuracy of a margin, from the accuracy of equilibria
+constexpr double k_at_bound = 0.98;   // utilisation from which friction is at its limit; forces of sliding friction are accurate to 2 %
+constexpr double k_just_below = 1e-3; // relative distance below the first limit at which the other loading paths are computed
 
-// Returns true for units of positions and forces. Velocities and accelerations have no meaning in an equilibrium.
+// Returns true for channels that have a meaning at rest: those whose unit contains no rate.
 bool is_of_rest(const std::string& unit) { return unit.find("/s") == std::string::npos; }
 
-// Returns the results of an equilibrium in the form of a run from the equilibrium without acceleration.
+// Returns the equilibrium as the result of a run that starts and ends there.
 RunResult as_run(const StaticMachine& machine, const Probe& probe) {
   RunResult result;
   result.trajectory = std::make_unique<Trajectory>(machine.system(), std::vector<std::string>{""});
@@ -75,7 +75,7 @@ std::string criterion_text(const CriterionResult& c, const std::string& begin) {
   return begin + ": " + c.text + " (" + what + (c.value ? " is " + number(*c.value, c.unit) : " has no value") + ")";
 }
 
-// Computes one load in several ways.
+// Proves one load case along several loading paths.
 class CaseProof {
 public:
   CaseProof(StaticMachine& machine, const LoadedModel& loaded, const StaticLoad& load) : machine_(machine), loaded_(loaded) {
@@ -88,9 +88,9 @@ public:
     grown_ = a > 0.0 ? machine_.ramped(case_.load.pull) : machine_.at_rest();
     if (a > 0.0) follow(a);
     if (!grown_.rest) return std::move(case_);
-    case_.verdict = Verdict::hold; // until a check fails
+    case_.verdict = Verdict::hold; // set before the checks, which can only worsen it
     ways_.push_back(&grown_);
-    ask_other_ways();
+    add_other_paths();
     collect();
     decide();
     return std::move(case_);
@@ -104,18 +104,18 @@ private:
     case_.why = why;
   }
 
-  // Finds the element that gives way first while the load grows.
+  // Grows the load to find the element that slips, slides or lifts first.
   void follow(double a) {
     const StaticRay ray = grow_pull(machine_, case_.load.pull / a, a);
     if (!ray.limits.empty()) {
-      const std::string words = limit_words(ray, 0);
+      const std::string words = limit_text(ray, 0);
       case_.first = words + " at " + acceleration(ray.limits.front().acceleration);
     }
     if (grown_.rest) return;
     const StaticLimit* const end = ray.limits.empty() || ray.limits.back().kind != LimitKind::ends ? nullptr : &ray.limits.back();
     const bool is_explained = end && ray.is_explained;
     if (is_explained)
-      case_.why = limit_words(ray, ray.limits.size() - 1) + " at " + acceleration(end->acceleration) + ", " +
+      case_.why = limit_text(ray, ray.limits.size() - 1) + " at " + acceleration(end->acceleration) + ", " +
                   rounded_text(100.0 * end->acceleration / a, 3) + " % of this load";
     else if (end && end->acceleration < 1e-3 * a)
       case_.why = "no rest: the machine gives way to the least pull (" + end->text + "). Hold its vehicle by a drive";
@@ -123,7 +123,7 @@ private:
     case_.verdict = is_explained ? Verdict::reject : Verdict::open;
   }
 
-  void ask_other_ways() {
+  void add_other_paths() {
     const Vec2& pull = case_.load.pull;
     if (pull == Vec2::Zero()) return;
     turned_ = machine_.ramped(-pull);
@@ -136,7 +136,7 @@ private:
     } else {
       case_.remarks.push_back("the reversed load is not carried, so its effect on the rest was not computed");
     }
-    loose_ = machine_.worked_loose(pull);
+    loose_ = machine_.without_friction(pull);
     if (loose_.rest) ways_.push_back(&loose_);
     else case_.remarks.push_back("it needs friction between bodies to hold: without, " + loose_.failure);
   }
@@ -146,7 +146,7 @@ private:
       StaticJoint one{joint, std::numeric_limits<double>::infinity()};
       for (const Probe* way : ways_) {
         const double margin = machine_.value(*way, joint + ".margin");
-        if (!(margin >= one.margin)) one.margin = margin; // NaN is the worst
+        if (!(margin >= one.margin)) one.margin = margin; // also true if margin is NaN
       }
       case_.joints.push_back(one);
     }
@@ -168,16 +168,17 @@ private:
     find_tipping();
   }
 
-  // The search for rest puts the whole load on at once, and can pass the rest of a load that grows. Friction that slides under a growing load
-  // ends at its bound, against its slide from `start`. Where it ends otherwise, friction carries less than under a growing load, and what holds
-  // the machine next to it carries more. So limits on friction forces are then open, and all others are on the safe side.
+  // Checks friction that slid during a search for equilibrium. The search applies the whole load at once and can overshoot the equilibrium
+  // of a slowly growing load. Under a growing load, sliding friction is at its limit and opposes its slide from `start`. If it is not, it
+  // carries less than it would, and parallel elements carry more. Limits on friction forces then remain open; other results are
+  // conservative.
   void check_slides(const Probe& way, const State& start) {
     for (const FrictionMargin& margin : way.rest->margins) {
       const std::vector<int>& slid = way.rest->slid;
       if (std::find(slid.begin(), slid.end(), margin.friction) == slid.end()) continue;
       const std::string& name = name_of(margin.friction);
       const bool is_at_bound = margin.used >= k_at_bound;
-      if (is_at_bound && !pushes_on(way, start, margin, name)) continue;
+      if (is_at_bound && !acts_along_slide(way, start, margin, name)) continue;
       const std::string passed =
           "'" + name + "' has slid and then " +
           (is_at_bound ? "pushes in the direction of its slide" : "carries " + rounded_text(100.0 * margin.used, 3) + " % of what it can") +
@@ -188,7 +189,7 @@ private:
     }
   }
 
-  // Leaves a limit on a friction force open, unless that friction cannot reach it.
+  // Sets the verdict to open if the criterion limits a friction force that can reach this limit.
   void check_friction_limit(const Criterion& criterion, const Probe& way, const std::string& passed) {
     for (std::size_t f = 0; f < machine_.system().frictions.size(); ++f) {
       const std::string& name = name_of(static_cast<int>(f));
@@ -207,8 +208,9 @@ private:
     return machine_.system().frictions[static_cast<std::size_t>(margin.friction)];
   }
 
-  // Returns true if friction along a line acts in the direction in which it has slid since `start`.
-  [[nodiscard]] bool pushes_on(const Probe& way, const State& start, const FrictionMargin& margin, const std::string& name) const {
+  // Returns true if friction along a line acts in the direction in which it slid since `start`, which friction cannot do under a growing
+  // load.
+  [[nodiscard]] bool acts_along_slide(const Probe& way, const State& start, const FrictionMargin& margin, const std::string& name) const {
     const FrictionElement& friction = *unit_of(margin).friction;
     if (friction.dimension() != 1) return false;
     const State& rest = way.rest->state;
@@ -217,7 +219,7 @@ private:
     place_bodies(start.q, start.v, before);
     place_bodies(rest.q, rest.v, now);
     const double slid = evaluate_row<false>(row, now.data()).value - evaluate_row<false>(row, before.data()).value;
-    return machine_.value(way, name + ".friction") * slid > 0.0; // false for NaN: no such channel
+    return machine_.value(way, name + ".friction") * slid > 0.0; // NaN, if there is no such channel, gives false
   }
 
   void collect_reactions() {
@@ -236,7 +238,7 @@ private:
     }
   }
 
-  // Computes tipping under the apparent gravity.
+  // Determines which parts tip under gravity plus pull.
   void find_tipping() {
     if (!(case_.apparent.norm() > 0.0)) return;
     Model model = loaded_.model;
@@ -285,22 +287,23 @@ private:
   StaticCase case_;
 };
 
-// Returns true if the machine also has an intact equilibrium when the pull grows from the opposite pull.
-bool is_borne_otherwise(StaticMachine& machine, const Vec2& pull) {
+// Returns true if the machine also has an equilibrium, with all limits kept, when the load grows from the opposite pull −`pull` instead of
+// from zero.
+bool has_equilibrium_from_opposite(StaticMachine& machine, const Vec2& pull) {
   const auto is_intact = [](const Probe& probe) {
     return probe.rest && std::all_of(probe.left.begin(), probe.left.end(), [](double left) { return left > 0.0; });
   };
   const Probe turned = machine.ramped(-pull);
-  if (!is_intact(turned)) return true; // the opposite load would change the machine
+  if (!is_intact(turned)) return true; // the opposite pull would exceed a limit itself, so there is no second path to compare
   return is_intact(machine.ramped_from(turned, pull));
 }
 
-StaticDirection look_along(StaticMachine& machine, double angle, double largest) {
+StaticDirection limits_along(StaticMachine& machine, double angle, double largest) {
   const auto without_rounding = [](double x) { return std::abs(x) < 1e-15 ? 0.0 : x; };
   const Vec2 direction(without_rounding(portable::cos(angle)), without_rounding(portable::sin(angle)));
   StaticDirection found{angle, grow_pull(machine, direction, largest), true};
   if (!found.ray.limits.empty() && found.ray.limits.front().acceleration > 0.0)
-    found.is_unique = is_borne_otherwise(machine, (1.0 - k_just_below) * found.ray.limits.front().acceleration * direction);
+    found.is_unique = has_equilibrium_from_opposite(machine, (1.0 - k_just_below) * found.ray.limits.front().acceleration * direction);
   return found;
 }
 
@@ -331,7 +334,7 @@ void conclude(StaticProof& proof, const StaticMachine& machine) {
 
 } // namespace
 
-std::string limit_words(const StaticRay& ray, std::size_t limit) {
+std::string limit_text(const StaticRay& ray, std::size_t limit) {
   const StaticLimit& one = ray.limits[limit];
   if (one.kind != LimitKind::ends) return one.text;
   std::string lifting, sliding, slipping;
@@ -370,7 +373,7 @@ StaticProof prove_statically(const LoadedModel& loaded, const StaticPreset& pres
   }
   for (int i = 0; i < options.directions; ++i) {
     ask_whether_to_stop();
-    proof.polar.push_back(look_along(machine, 2.0 * std::numbers::pi * i / options.directions, options.largest));
+    proof.polar.push_back(limits_along(machine, 2.0 * std::numbers::pi * i / options.directions, options.largest));
   }
   const RunResult rest = as_run(machine, machine.at_rest());
   for (const Criterion& criterion : machine.model().criteria)

@@ -7,10 +7,12 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_first_step = 1.0 / 16.0; // of the machine's gravity, or of the largest pull if there is no gravity
+// first step of the pull, as a fraction of gravity, or of the largest pull if there is no gravity
+constexpr double k_first_step = 1.0 / 16.0;
 constexpr double k_growth = 1.3;
-constexpr double k_width = 1e-6;    // of the acceleration; accuracy of a limit
-constexpr double k_at_limit = 1e-4; // of the reserve at rest; a hundred times the reserve at the end of an interval of width k_width
+constexpr double k_width = 1e-6; // relative accuracy of the acceleration of a limit
+// a reserve below this fraction of its value at rest is at its limit; 100 times the change over an interval of width k_width
+constexpr double k_at_limit = 1e-4;
 constexpr int k_most_probes = 80;
 
 struct Point {
@@ -32,10 +34,10 @@ public:
     for (double a = std::min(first, most_);; a = std::min(most_, std::max(a + first, a * k_growth))) {
       Point high = at(a);
       if (!high.probe.rest) {
-        end_between(low, high);
+        locate_end(low, high);
         break;
       }
-      look_between(low, high);
+      locate_limits(low, high);
       low = std::move(high);
       found_.largest = a;
       if (a >= most_) break;
@@ -54,32 +56,33 @@ private:
     found_.limits.push_back({watch.kind, watch.element, "'" + watch.element + "' " + name_of(watch.kind), a, error});
   }
 
-  // Returns the acceleration at which the linearly extrapolated reserve of watch w is zero.
-  [[nodiscard]] static double foreseen(const Point& before, const Point& low, std::size_t w) {
+  // Returns the acceleration at which the reserve of monitored limit w, extrapolated linearly, is zero.
+  [[nodiscard]] static double predicted_limit(const Point& before, const Point& low, std::size_t w) {
     const double slope = (low.probe.left[w] - before.probe.left[w]) / (low.a - before.a);
     return slope < 0.0 ? low.a - low.probe.left[w] / slope : low.a - 1.0;
   }
 
-  // Returns the smallest predicted limit of the remaining watches, or that of w only.
-  [[nodiscard]] double foreseen(const Point& before, const Point& low, std::optional<std::size_t> only) const {
+  // Returns the smallest predicted acceleration of the limits that were not reached yet, or of limit `only`.
+  [[nodiscard]] double predicted_limit(const Point& before, const Point& low, std::optional<std::size_t> only) const {
     double first = low.a - 1.0;
     for (std::size_t w = 0; w < is_reached_.size(); ++w) {
       if (only ? w != *only : is_reached_[w] != 0) continue;
-      const double a = foreseen(before, low, w);
+      const double a = predicted_limit(before, low, w);
       if (a > low.a && (first < low.a || a < first)) first = a;
     }
     return first;
   }
 
-  // Bisects between a point at which `is_good` is true and one at which it is false.
-  template <class IsGood> void close_in(Point& low, Point& high, std::optional<std::size_t> only, const IsGood& is_good) {
+  // Bisects between `low`, where `is_good` is true, and `high`, where it is false. Two of three iterations use a prediction instead of the
+  // midpoint.
+  template <class IsGood> void bisect(Point& low, Point& high, std::optional<std::size_t> only, const IsGood& is_good) {
     Point before = low;
     for (int i = 0; i < k_most_probes; ++i) {
       const double width = high.a - low.a, enough = k_width * high.a;
       if (width <= enough) return;
       double next = low.a + 0.5 * width;
       if (i % 3 != 2 && low.a > before.a) {
-        const double guess = foreseen(before, low, only), aside = 0.3 * enough;
+        const double guess = predicted_limit(before, low, only), aside = 0.3 * enough;
         if (guess > low.a && guess < high.a) next = i % 3 == 0 ? guess - aside : guess + aside;
       }
       if (!(next > low.a && next < high.a)) next = low.a + 0.5 * width;
@@ -93,20 +96,20 @@ private:
     }
   }
 
-  // Locates limits of watches between two equilibria.
-  void look_between(const Point& from, const Point& to) {
+  // Locates the limits that are reached between two equilibria.
+  void locate_limits(const Point& from, const Point& to) {
     for (std::size_t w = 0; w < is_reached_.size(); ++w) {
       if (is_reached_[w] != 0 || to.probe.left[w] > 0.0) continue;
       Point low = from, high = to;
-      close_in(low, high, w, [w](const Probe& p) { return p.rest && p.left[w] > 0.0; });
+      bisect(low, high, w, [w](const Probe& p) { return p.rest && p.left[w] > 0.0; });
       note(w, 0.5 * (low.a + high.a), 0.5 * (high.a - low.a));
     }
   }
 
-  void end_between(const Point& from, const Point& to) {
+  void locate_end(const Point& from, const Point& to) {
     Point low = from, high = to;
-    close_in(low, high, std::nullopt, [](const Probe& p) { return p.rest.has_value(); });
-    look_between(from, low);
+    bisect(low, high, std::nullopt, [](const Probe& p) { return p.rest.has_value(); });
+    locate_limits(from, low);
     found_.largest = low.a;
     const double a = 0.5 * (low.a + high.a), error = 0.5 * (high.a - low.a);
     for (std::size_t w = 0; w < is_reached_.size(); ++w)

@@ -11,7 +11,7 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr std::uint32_t k_stream = 28; // random number stream, different from those of studies
+constexpr std::uint32_t k_stream = 28; // number of the random stream; studies use others
 
 study::Variable variable_of(const Uncertain& u, const Model& model) {
   study::Variable v;
@@ -29,7 +29,7 @@ study::Variable variable_of(const Uncertain& u, const Model& model) {
   return v;
 }
 
-// Returns true if two models define the same distribution for a number.
+// Returns true if both tables define the same distribution.
 bool is_same_law(const study::Variable& a, const study::Variable& b) {
   return a.is_factor == b.is_factor && a.distribution == b.distribution && a.mean == b.mean &&
          a.standard_deviation == b.standard_deviation && a.cov == b.cov && a.low == b.low && a.high == b.high && a.mode == b.mode &&

@@ -13,20 +13,21 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_release = 0.25;     // of the threshold; largest signal at the ends of an event, where it is tapered
-constexpr double k_floor = 0.03;       // of the requested threshold; noise of a recorder, without mechanical effect
-constexpr double k_same_margin = 0.02; // relative
-constexpr double k_same_share = 0.1;   // of the confidence interval of the probability
-constexpr double k_same_length = 0.2;  // s; an event that is extended by less, with signals below a quarter of its threshold, is regarded
-                                       // as equal
-constexpr double k_day = 86400.0;      // s
-constexpr double k_most_samples = 4e6; // for all events together: 200 MB
+constexpr double k_release = 0.25; // largest signal at the tapered ends of an event, as a fraction of its threshold
+// lowest threshold, as a fraction of the requested one; smaller signals are noise of a recorder without mechanical effect
+constexpr double k_floor = 0.03;
+constexpr double k_same_margin = 0.02; // largest relative change of the margin between equal results
+constexpr double k_same_share = 0.1;   // largest change of the probability between equal results, as a fraction of its confidence interval
+// events that differ by less in length, s, count as equal: the difference has signals below a quarter of the threshold
+constexpr double k_same_length = 0.2;
+constexpr double k_day = 86400.0;      // length of a day, s
+constexpr double k_most_samples = 4e6; // largest number of samples in all events together: 200 MB
 const std::string k_too_long = "it lasts too long to be held in memory";
 constexpr int k_needed = 2, k_most_halvings = 12;
 
 double least_threshold(const RecordEvents& record) { return k_floor * record.rules.threshold; }
 
-/// Results that must not change.
+/// Results that must be the same for two thresholds.
 struct Outcome {
   Decision decision = Decision::open;
   double margin = 0.0;
@@ -43,7 +44,7 @@ bool is_same(const Outcome& a, const Outcome& b) {
   return a.decision == b.decision && is_margin_same && is_share_same;
 }
 
-/// Events of all records at one threshold, with the results of their simulation.
+/// Events of all records for one threshold, with the results of their simulation.
 struct Level {
   std::vector<std::vector<RecordedEvent>> events;
   Outcome outcome;
@@ -127,7 +128,7 @@ private:
     return sum;
   }
 
-  // Takes the part of each record above the requested threshold, shortened.
+  // Loads the events above the requested threshold, or above the record's largest value if this is lower.
   void load_greatest() {
     for (RecordEvents& record : a_.records) {
       EventRules rules = record.rules;
@@ -147,7 +148,8 @@ private:
     return level;
   }
 
-  // Simulates one voyage with nominal values, and the samples.
+  // Simulates the voyage with nominal values and with all samples. Updates the duration of events that the remaining computing time
+  // permits.
   Outcome outcome(int halvings) {
     const std::clock_t from = std::clock();
     if (options_.progress) options_.progress("threshold", halvings, k_most_halvings);
@@ -164,7 +166,7 @@ private:
     return now;
   }
 
-  // Returns the duration for which all models are simulated, s.
+  // Returns the total simulated time of all events in all models, s.
   double length() const {
     double events = 0.0, sum = 0.0;
     for (const RecordEvents& record : a_.records) events += length_of(record);
@@ -174,7 +176,7 @@ private:
 
   static double seconds_since(std::clock_t from) { return static_cast<double>(std::clock() - from) / CLOCKS_PER_SEC; }
 
-  // Returns false if all thresholds have reached their minimum.
+  // Returns true if the threshold of any record is lower than one halving before, that is, if the lowest threshold is not reached yet.
   bool is_lower(int halvings) const {
     return std::any_of(a_.records.begin(), a_.records.end(), [&](const RecordEvents& record) {
       return !record.recording.layout.is_peaks && rules_at(record, used_, halvings).each != rules_at(record, used_, halvings - 1).each;
@@ -197,7 +199,7 @@ private:
   Assessment& a_;
   std::string used_;
   std::clock_t begin_;
-  double budget_ = 0.0, affordable_ = 0.0; ///< computing time, s; duration of events, s
+  double budget_ = 0.0, affordable_ = 0.0; ///< computing time permitted, s; duration of events that the rest of it permits, s
 };
 
 } // namespace
@@ -211,7 +213,7 @@ EventRules rules_at(const RecordEvents& record, const std::string& used, int hal
   std::size_t largest = 0;
   double most = -1.0;
   bool has_any = false;
-  constexpr double k_below = 0.999; // so that the largest sample itself exceeds its threshold
+  constexpr double k_below = 0.999; // lower than 1, so that the largest sample exceeds the threshold
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const bool is_used = used.find(axes[i]) != std::string::npos;
     const double greatest = record.greatest[i];
@@ -221,7 +223,7 @@ EventRules rules_at(const RecordEvents& record, const std::string& used, int hal
       each[i] = std::max(least_threshold(record), std::min(rules.threshold, k_below * greatest) / std::exp2(halvings));
     has_any |= greatest > each[i];
   }
-  if (!has_any && most >= 0.0) { // a record of noise: only its largest value is simulated
+  if (!has_any && most >= 0.0) { // the axis has only noise: its largest value alone is an event
     each[largest] = k_below * most;
     rules.release = 1.0;
   }

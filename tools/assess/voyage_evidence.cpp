@@ -11,8 +11,8 @@ namespace steplap::assess {
 
 namespace {
 
-// The position of a recorder on the lid of a tank that does not rotate causes errors up to 45 % in the pressure that joints require, in
-// either direction (docs/evidence/recorders.md). A smaller margin is therefore not reliable.
+// Smallest reliable margin for a recorder on the tank's lid. Even if the tank does not rotate, this position causes errors of up to 45 % in
+// the pressure that joints require, in either direction (docs/evidence/recorders.md).
 constexpr double k_lid_margin = 1.5;
 
 void find_axes(Assessment& a) {
@@ -21,10 +21,11 @@ void find_axes(Assessment& a) {
     if (record.recording.layout.is_peaks) continue;
     const std::string axes = record.axes();
     const auto is_used = [&](std::size_t i) { return used.find(axes[i]) != std::string::npos; };
-    double seen = 0.0; // as seen by the models
+    double seen = 0.0; // largest acceleration along axes that drive models, m/s²
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (is_used(i)) seen = std::max(seen, record.greatest[i]);
-    // A smaller shock counts if it is more than half of what the models see: so a recorder reads that was turned by 27° or more.
+    // The largest reading of an axis that drives no model must be below a shock, or below a quarter of one if it exceeds half of `seen`, as
+    // for a recorder that was turned by 27° or more.
     constexpr double k_turned = 0.25, k_half = 0.5;
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (!is_used(i) && record.greatest[i] > (record.greatest[i] > k_half * seen ? k_turned : 1.0) * shock_level(record.rules))
@@ -43,16 +44,16 @@ void find_axes(Assessment& a) {
 }
 
 double class_of(double bandwidth) {
-  // −3 dB at 1.667 CFC (transformer/recorder/filter.h)
+  // Converts the −3 dB frequency of the filter to its class (CFC): the ratio is 1.667 (transformer/recorder/filter.h).
   return bandwidth / (ChannelFilter::k_ratio * std::pow(std::sqrt(2.0) - 1.0, 0.25));
 }
 
-// Filters the assessment's records with another corner frequency. Returns false if this is not possible.
+// Repeats the filtering of all records with `factor` times the corner frequency. Returns false if the sampling rate does not permit it.
 bool refilter(Assessment& other, double factor) {
   for (RecordEvents& record : other.records) {
     if (record.recording.layout.is_peaks) continue;
     double frequency_class = class_of(factor * record.bandwidth);
-    const double highest = 0.1 * record.rate * (1.0 - 1e-9); // highest possible for the filter
+    const double highest = 0.1 * record.rate * (1.0 - 1e-9); // largest corner frequency of the filter, Hz
     const bool is_whole = frequency_class > highest;
     if (is_whole && factor > 1.0 && !record.is_filtered) return false;
     if (is_whole && factor < 1.0) frequency_class = highest;
@@ -83,7 +84,7 @@ void find_bandwidth(const AssessmentOptions& options, Assessment& a) {
   double lowest = 0.0;
   for (const RecordEvents& record : a.records)
     if (!record.recording.layout.is_peaks) lowest = lowest == 0.0 ? record.bandwidth : std::min(lowest, record.bandwidth);
-  if (lowest == 0.0) return; // assumed pulses
+  if (lowest == 0.0) return; // assumed pulses have no bandwidth
   const auto open = [&](const std::string& what) {
     a.missing.push_back(
         {Evidence::bandwidth,
@@ -108,8 +109,8 @@ void find_bandwidth(const AssessmentOptions& options, Assessment& a) {
         if (c.quantity == "damage_probability" && damage.high > *c.at_most)
           return open(where + "not, as the probability of damage is " + rounded_text(100.0 * damage.value, 3) + " %");
     }
-    // For a record without filter, frequencies above half its sampling rate are unknown. Their effect is assumed to equal that of the last
-    // halving.
+    // Frequencies above half the sampling rate of an unfiltered record are unknown. Their effect on the margin is assumed to equal that of
+    // the last halving of the bandwidth.
     const bool can_double = std::any_of(a.records.begin(), a.records.end(), [](const RecordEvents& r) { return r.is_filtered; });
     if (factor < 1.0 && !can_double && a.summary.least_margin < summary.least_margin &&
         a.summary.least_margin * a.summary.least_margin < summary.least_margin)
@@ -139,7 +140,7 @@ std::string axes_used(const std::vector<DrivenModel>& models) {
   return used;
 }
 
-void find_unseen(const AssessmentOptions& options, Assessment& a) {
+void find_gaps_before_runs(const AssessmentOptions& options, Assessment& a) {
   for (const RecordEvents& record : a.records)
     for (const MissingEvidence& missing : record.missing)
       a.missing.push_back({missing.item, "'" + record.file + "': " + missing.reason, missing.remedy});
@@ -147,7 +148,7 @@ void find_unseen(const AssessmentOptions& options, Assessment& a) {
   if (auto missing = uncovered(a.records, options.voyage)) a.missing.push_back(std::move(*missing));
 }
 
-void find_undecided(const AssessmentOptions& options, Assessment& a) {
+void check_bandwidth_and_position(const AssessmentOptions& options, Assessment& a) {
   if (decision_by_criteria(a, a.summary) != Decision::energise) return;
   find_place(a);
   find_bandwidth(options, a);

@@ -1,4 +1,4 @@
-// Finds evidence that records and models together lack for the decision "energise" (tools/assess/evidence.h).
+// Finds evidence for the decision "energise" that is missing in the records and models together (tools/assess/evidence.h).
 #pragma once
 
 #include "tools/assess/assessment.h"
@@ -7,9 +7,10 @@ namespace steplap::assess {
 
 /// Returns the letters of the record's axes that drive one of the models.
 [[nodiscard]] std::string axes_used(const std::vector<DrivenModel>& models);
-/// Finds missing axes, coverage and clocks, which are known before a model is run.
-void find_unseen(const AssessmentOptions& options, Assessment& assessment);
-/// Checks position and bandwidth of the recorder if the decision would be "energise": repeats the voyage with other corner frequencies.
-void find_undecided(const AssessmentOptions& options, Assessment& assessment);
+/// Finds missing axes, coverage and clocks, which require no run of a model.
+void find_gaps_before_runs(const AssessmentOptions& options, Assessment& assessment);
+/// Checks whether position and bandwidth of the recorder could change the decision "energise". Repeats the voyage with other corner
+/// frequencies.
+void check_bandwidth_and_position(const AssessmentOptions& options, Assessment& assessment);
 
 } // namespace steplap::assess

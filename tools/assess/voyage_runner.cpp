@@ -27,7 +27,8 @@ std::vector<double> begins_of(const std::vector<DriveHistory>& histories, double
   return begins;
 }
 
-// Returns the channels needed for joints, criteria and trust. Extremes of all other channels would take most of the time of a sample.
+// Returns the channels whose extremes are needed: joints, criteria and checks of the run. Those of all channels would take most of the
+// time.
 std::vector<std::string> channels_wanted(const Model& whole, const System& system, const std::vector<std::string>& traced) {
   std::vector<std::string> wanted = traced_channels(traced);
   for (std::string& channel : channels_of_trust(whole)) wanted.push_back(std::move(channel));
@@ -67,10 +68,10 @@ struct VoyageRunner::Course {
   const System& system;
   const std::function<bool()>& stop;
   VoyageOutcome outcome;
-  std::vector<double> x, y, slid; ///< per joint, m
+  std::vector<double> x, y, slid; ///< relative position and slide of each joint, m
 };
 
-// Evaluates one interval of the run.
+// Evaluates one event of the run.
 static void look(const Model& whole, const System& system, const RunResult& result, std::size_t event,
                  const std::vector<std::string>& assumed, VoyageOutcome& outcome, std::vector<double>& x, std::vector<double>& y,
                  std::vector<double>& slid) {
@@ -121,7 +122,7 @@ void VoyageRunner::pass_events(Course& course) {
     if (!model_.traced.empty())
       course.outcome.traces.push_back(friction_traces(course.whole, course.system, result, model_.traced, begins_[i], steps_[i]));
     state = result.final_state;
-    state.t = begins_[i + 1]; // exactly, without rounding
+    state.t = begins_[i + 1]; // avoids the rounding error of the run's end time
     state.dissipated = state.work = 0.0;
     if (result.stop_reason.empty()) continue;
     if (course.outcome.summary.unknown.empty()) course.outcome.summary.unknown = result.stop_reason;
@@ -135,7 +136,7 @@ VoyageOutcome VoyageRunner::run(const std::vector<double>& numbers, const std::f
   try {
     const std::unique_ptr<System> system = variants_->make(numbers);
     Model whole = variants_->model();
-    convert_limits(whole, *system); // limits may vary, and the unit of a channel may not be SI
+    convert_limits(whole, *system); // limits may depend on varied numbers, and are given in the units of their channels
     Course course{whole, *system, stop, failed, {}, {}, {}};
     try {
       pass_events(course);

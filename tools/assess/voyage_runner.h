@@ -1,6 +1,5 @@
-// Simulates the whole voyage of one model for many samples of its uncertain values with one compiled system. Events follow each other on
-// one time axis without the quiet intervals. Slides, verdicts and margins are computed as in Traveller (passage.h), but without error
-// estimates.
+// Simulates the whole voyage in one model for many samples of the uncertain values, with one compiled system. Events follow each other
+// without the intervals at rest between them. Slides, verdicts and margins are computed as in passage.h, but without error estimates.
 #pragma once
 
 #include "elements/views/friction_plane.h"
@@ -18,15 +17,17 @@ namespace steplap::assess {
 /// Result of one sample for one model.
 struct VoyageOutcome {
   VoyageSummary summary;
-  std::vector<char> slips; ///< per event: true if a joint slipped
+  std::vector<char> slips; ///< for each event: true if a joint slipped
   std::size_t events_made = 0;
-  std::vector<std::vector<SampledFriction>> traces; ///< per simulated event, of DrivenModel::traced
+  /// friction histories of the elements in DrivenModel::traced, one list per simulated event
+  std::vector<std::vector<SampledFriction>> traces;
 };
 
 /// Runs samples. Each thread needs its own object.
 class VoyageRunner {
 public:
-  /// `histories` are those of the events, each from 0; `paths` are the fields that vary. Throws ModelError if the model cannot be run.
+  /// `histories`: those of the events, each starting at time 0. `paths`: model fields that vary. Throws ModelError if the model cannot be
+  /// run.
   VoyageRunner(const DrivenModel& model, const std::vector<DriveHistory>& histories, std::vector<std::string> paths);
   VoyageRunner(const VoyageRunner&) = delete;
   VoyageRunner& operator=(const VoyageRunner&) = delete;

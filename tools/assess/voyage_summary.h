@@ -1,4 +1,4 @@
-// Results of a voyage that criteria use, for the detailed simulation and for each sample.
+// Results of a voyage to which criteria are applied, for the detailed simulation and for each sample.
 #pragma once
 
 #include "mbd/trust/judgement.h"
@@ -10,13 +10,13 @@
 
 namespace steplap::assess {
 
-/// Worst outcome of the limits in the models: [[acceptance]] and those of elements.
+/// Worst outcome of the limits in all models: [[acceptance]] tables and limits of elements.
 struct LimitsSummary {
   Verdict outcome = Verdict::hold;
   double share = 0.0; ///< utilisation of the limit; 0: unknown
-  std::string unmet;  ///< for people: "'bottom arresting devices' in event 1, 106 % of its limit"
+  std::string unmet;  ///< the exceeded limit as a text, "'bottom arresting devices' in event 1, 106 % of its limit"
 
-  /// Takes the outcome of a limit if it is worse than all before: of equal outcomes the one with the larger share.
+  /// Keeps the worse of the present and the given outcome; for equal outcomes, the one with the larger utilisation.
   void note(Verdict outcome_, double share_, const std::string& unmet_) {
     const bool is_worse = outcome_ > outcome || (outcome_ == outcome && outcome != Verdict::hold && share_ > share);
     if (is_worse) outcome = outcome_, share = share_, unmet = unmet_;
@@ -25,19 +25,19 @@ struct LimitsSummary {
 
 /// Worst values over all models and events so far.
 struct VoyageSummary {
-  double least_margin = std::numeric_limits<double>::infinity(); ///< smallest friction capacity over demand of a joint
+  double least_margin = std::numeric_limits<double>::infinity(); ///< smallest ratio of a joint's friction capacity to its demand
   double slid = 0.0;                                             ///< largest slide of a joint, summed over events, m
   double overlap_left = 1.0;                                     ///< smallest remaining overlap of a joint, as a fraction
   bool slips = false, lifts = false, comes_apart = false;
-  LimitsSummary limits, known_limits; ///< the latter without limits that are assumed (assumed_limits.h)
-  double planes_use = 0.0;            ///< largest share of a friction used by two planes together
-  Verdict planes = Verdict::hold;     ///< verdict on the slide of shared frictions: inspect beyond a limit or if the slide is an upper
-                                      ///< bound, open if there is no limit
-  std::string planes_slip;            ///< sentence about the largest such slide; "" if there is none
-  std::string unknown;                ///< if not empty: reason why a run failed or cannot be trusted
-  std::string first_slip;             ///< for people: "'front joint' slips in event 3"
+  LimitsSummary limits, known_limits; ///< `known_limits` excludes limits that are assumed (assumed_limits.h)
+  double planes_use = 0.0;            ///< largest combined utilisation of a friction shared by two planes
+  /// verdict on the slide of shared frictions: inspect if it exceeds a limit or is only an upper bound, open if there is no limit
+  Verdict planes = Verdict::hold;
+  std::string planes_slip; ///< sentence about the largest such slide; "" if there is none
+  std::string unknown;     ///< reason why a run failed or is not trusted; "" if there is none
+  std::string first_slip;  ///< the first slip as a text, "'front joint' slips in event 3"
 
-  /// Takes the outcome of a limit of a model.
+  /// Takes the outcome of a limit into account.
   void note_limit(Verdict outcome, bool is_assumed, double share, const std::string& unmet) {
     limits.note(outcome, share, unmet);
     if (!is_assumed) known_limits.note(outcome, share, unmet);

@@ -1,7 +1,7 @@
-// Measures the cost of one evaluation, of one step of each integrator and of a whole run for the paper's transformer, and for the same
-// bodies with springs only, which shows the cost of contacts, friction and constraints.
+// Measures the cost of one evaluation, of one step of each integrator, and of a complete run of the paper's transformer. The same bodies
+// with springs only are measured, too; the difference is the cost of contacts, friction and constraints.
 //
-// Benchmarks are named scene/quantity/…, so that results of two scenes can be divided.
+// Benchmarks are named scene/quantity/…, so that results of the two scenes can be divided.
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/system/instance.h"
@@ -17,13 +17,13 @@ using namespace steplap;
 
 namespace {
 
-constexpr double k_sliding = 0.10;  // s; the active part slides and the load is near its peak
-constexpr double k_stretch = 0.005; // s of motion that the step benchmark repeats
+constexpr double k_sliding = 0.10;  // time of the measured state, s: the active part slides, and the load is near its peak
+constexpr double k_stretch = 0.005; // duration of the motion that the step benchmark repeats, s
 
 struct PaperRun {
   Model model;
   std::unique_ptr<System> system;
-  State state; ///< at k_sliding
+  State state; ///< state at k_sliding
 };
 
 const PaperRun& scene(const std::string& path) {
@@ -76,7 +76,7 @@ void step(benchmark::State& state, const std::string& path, const std::string& m
   state.counters["evaluations_per_step"] = static_cast<double>(dynamics.evaluations() - before) / static_cast<double>(state.iterations());
 }
 
-// Measures a whole run with the settings of the model, without samples: events are located and handled.
+// Measures a complete run with the settings of the model, including event location, without samples.
 void whole_run(benchmark::State& state, const std::string& path, const std::string& method) {
   const PaperRun& s = scene(path);
   SimulationOptions options = options_of(s.model);
@@ -90,7 +90,7 @@ void whole_run(benchmark::State& state, const std::string& path, const std::stri
   state.counters["evaluations_rate"] = benchmark::Counter(static_cast<double>(statistics.evaluations) * runs, benchmark::Counter::kIsRate);
 }
 
-// Measures a change of mass by instantiate() and by variants of the model without channels.
+// Measures the creation of a system with a changed mass, by instantiate() and by a variant of the model without channels.
 void make_system(benchmark::State& state, bool has_variants) {
   const Model given = read_given_model(STEPLAP_MODELS "/paper/interference.toml", transformer_catalog());
   const std::string path = "body.active part.mass";

@@ -1,5 +1,5 @@
-// Measures the computing time of step-lap joint friction: closed form against adaptive quadrature of equal accuracy, required pressure with
-// and without a start value, the certified bound, fast and exact overlap, non-convex against convex sheets.
+// Measures the computing time of friction in step-lap joints: closed form and adaptive quadrature of equal accuracy; required pressure with
+// and without a start value; the certified bound; fast and exact overlap; non-convex and convex sheets.
 #include "elements/step_lap/patch/overlap.h"
 #include "elements/step_lap/patch/required_pressure.h"
 
@@ -15,7 +15,7 @@ using namespace steplap;
 
 namespace {
 
-/// The paper's joint (one limb): yoke and limb sheets at the upper (+1) and lower (−1) corner.
+/// Returns a sheet of the paper's joint (one limb) as an outline: yoke or limb sheet, at the upper (+1) or lower (−1) corner.
 Outline sheet(double k, double s0, double s1, double q0, double q1) {
   const double r = std::sqrt(0.5);
   const Vec2 corner(-0.25, 1.15 * k), t(r, r * k), n(r, -r * k);
@@ -39,7 +39,7 @@ Patch joint() {
 
 Polygon quadrilateral() { return {{{-0.5, -0.3}, {0.6, -0.4}, {0.5, 0.35}, {-0.4, 0.3}}, {}}; }
 
-/// Twists about points inside and around the quadrilateral.
+/// Returns twists about points inside and around the quadrilateral.
 std::array<Vec3, 256> near_twists() {
   std::array<Vec3, 256> twists;
   for (std::size_t i = 0; i < twists.size(); ++i) {
@@ -49,8 +49,8 @@ std::array<Vec3, 256> near_twists() {
   return twists;
 }
 
-/// Adaptive Gauss-Kronrod (7, 15) quadrature in both directions over the triangles from the first vertex, the obvious method without a
-/// closed form. It computes h only; the wrench would require three more integrands.
+/// Integrates by adaptive Gauss-Kronrod (7, 15) quadrature, applied in both directions to the triangles from the first vertex: the usual
+/// method without a closed form. Only h is computed; the wrench requires three more integrands.
 double adaptive(const auto& f, double a, double b, double tolerance, int depth) {
   static constexpr double x[8] = {0.991455371120813, 0.949107912342759, 0.864864423359769, 0.741531185599394,
                                   0.586087235467691, 0.405845151377397, 0.207784955007898, 0.0};
@@ -118,7 +118,7 @@ void h_gradient_hessian_far(benchmark::State& state) {
 }
 BENCHMARK(h_gradient_hessian_far);
 
-/// The argument is the exponent of the tolerance; "largest_error" shows which one reaches 1e-10.
+/// Benchmark argument: exponent of the tolerance. The counter "largest_error" shows which tolerance gives 1e-10.
 void h_only_quadrature(benchmark::State& state) {
   Patch patch;
   patch.add(quadrilateral(), 1);
@@ -133,7 +133,7 @@ void h_only_quadrature(benchmark::State& state) {
 }
 BENCHMARK(h_only_quadrature)->DenseRange(6, 10, 1);
 
-/// Wrenches that vary as in a run: rotating force, changing couple.
+/// Returns wrenches as they occur in a run: rotating force, varying couple.
 std::array<Vec3, 1024> wrenches() {
   std::array<Vec3, 1024> out;
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -198,7 +198,7 @@ void overlap_exact(benchmark::State& state) {
 }
 BENCHMARK(overlap_exact);
 
-/// Work of a sliding joint at every evaluation, for both corners: overlap, patch, wrench.
+/// Measures the work of a sliding joint per evaluation, for both corners: overlap, patch, wrench.
 void sliding_joint(benchmark::State& state) {
   const std::array yokes{yoke_sheet(1), yoke_sheet(-1)}, limbs{limb_sheet(1), limb_sheet(-1)};
   OverlapWorkspace workspace;
@@ -217,7 +217,7 @@ void sliding_joint(benchmark::State& state) {
 }
 BENCHMARK(sliding_joint);
 
-// --- non-convex sheets, against convex ones with as many corners ----------------------------------------
+// --- non-convex sheets and convex ones with as many corners ----------------------------------------------
 
 /// Returns a regular polygon of radius 1, or a star if every other corner has the radius `inner`.
 Ring regular(int corners, double inner = 1, double scale = 1) {
@@ -245,7 +245,8 @@ Polygon star(int tips) { return {regular(2 * tips, 0.6), {}}; }
 Polygon plate(int hole_corners) { return {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, {regular(hole_corners, 1, 0.6)}}; }
 Polygon polygon_with(int corners) { return {regular(corners), {}}; }
 
-/// Returns the time of f(pose), s, the minimum of several trials: shifts up to a fifth of the sheets, rotations up to 1 rad.
+/// Returns the time of f(pose), s, as the minimum of several trials. Poses are shifts of up to 20 % of the sheet and rotations of up to 1
+/// rad.
 double seconds(const auto& f) {
   double best = 1;
   for (int trial = 0; trial < 7; ++trial) {
@@ -279,8 +280,8 @@ struct SheetTimes {
   }
 };
 
-/// Prints times for a sheet on a copy of itself, shifted and rotated: overlap alone (µs, and relative to a regular polygon with as many
-/// corners), the depth used to detect separation, and the whole work of a sliding joint at an evaluation.
+/// Measures a sheet on a shifted and rotated copy of itself: overlap alone (µs, and relative to a regular polygon with as many corners),
+/// depth for the detection of separation, and the complete work of a sliding joint per evaluation.
 void concave_to_convex(benchmark::State& state, const Polygon& polygon) {
   const Outline sheet = make_outline(polygon);
   std::size_t corners = polygon.outer.size();

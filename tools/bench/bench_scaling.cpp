@@ -27,7 +27,7 @@ constexpr int k_batches = 5;
 
 const char* const k_header = "gravity = [0.0, -9.81]\n[simulation]\nend = 10.0\nintegrator = \"rk4\"\nstep = 1e-4\n";
 
-// A falling chain, initially horizontal, with pins between its links.
+// Returns a chain of n pinned links that falls from the horizontal.
 std::string chain(int n) {
   std::ostringstream text;
   text << k_header;
@@ -43,7 +43,7 @@ std::string chain(int n) {
   return text.str();
 }
 
-// A square net of masses, 1 m apart, suspended at its first row.
+// Returns a square grid of masses at distances of 1 m, suspended at its first row.
 std::string grid(int n) {
   const int side = std::max(2, static_cast<int>(std::lround(std::sqrt(n))));
   std::ostringstream text;
@@ -68,7 +68,7 @@ std::string grid(int n) {
   return text.str();
 }
 
-// Linkages of crank, coupler and rocker, 4 m apart, falling under gravity.
+// Returns linkages of crank, coupler and rocker, 4 m apart, that fall under gravity.
 std::string linkages(int n) {
   std::ostringstream text;
   text << k_header;
@@ -106,7 +106,7 @@ void measure(const char* scene, const std::string& text, bool is_absolute = fals
   SimulationOptions options = options_of(model);
   options.output_step = 0.0;
   if (is_absolute) options.coordinates = Coordinates::absolute;
-  options.has_extremes = false; // the search for extremes of all channels would be measured, too
+  options.has_extremes = false; // the search for extremes of all channels is not part of the measurement
   Simulation simulation(*system, system->initial_state(), options);
   const double started = thread_cpu_seconds();
   const double memory = allocated() - empty;

@@ -17,7 +17,7 @@
 namespace steplap {
 namespace {
 
-constexpr int k_solutions = 6; // stages of rodas5p that solve a linear system with the same factors
+constexpr int k_solutions = 6; // number of stages of rodas5p, each of which solves a linear system with the same factors
 
 struct MatrixPosition {
   int row = 0, column = 0;
@@ -25,8 +25,8 @@ struct MatrixPosition {
 
 struct Matrix {
   int n = 0;
-  std::vector<MatrixPosition> entries;     ///< positions may occur repeatedly; their values are added
-  std::vector<std::vector<double>> values; ///< values for several steps
+  std::vector<MatrixPosition> entries;     ///< positions of the entries; values at equal positions are added
+  std::vector<std::vector<double>> values; ///< values of the entries for several steps
 };
 
 Matrix coupled(const std::vector<std::pair<int, int>>& pairs, int bodies) {
@@ -63,16 +63,16 @@ Matrix grid_of(int side) {
   return coupled(pairs, side * side);
 }
 
-// Returns the largest |A x − b| for the values of one step, with b = 1 in all components.
+// Returns max |A x − b| for the matrix of one step, with b = 1 in all components.
 double residual(const Matrix& m, std::size_t step, const std::vector<double>& x) {
   std::vector<double> left(static_cast<std::size_t>(m.n), -1.0);
   for (std::size_t k = 0; k < m.entries.size(); ++k) left[m.entries[k].row] += m.values[step][k] * x[m.entries[k].column];
   return std::accumulate(left.begin(), left.end(), 0.0, [](double most, double value) { return std::max(most, std::abs(value)); });
 }
 
-class Own {
+class SteplapLu {
 public:
-  explicit Own(const Matrix& m) : m_(m) {}
+  explicit SteplapLu(const Matrix& m) : m_(m) {}
   void step(std::size_t k, std::vector<double>& x) {
     lu_.begin(m_.n);
     for (std::size_t i = 0; i < m_.entries.size(); ++i) lu_.add(m_.entries[i].row, m_.entries[i].column, m_.values[k][i]);
@@ -149,9 +149,9 @@ template <class Lu> void measure(benchmark::State& state, const Matrix& matrix) 
   state.counters["residual"] = worst;
 }
 
-void row_own(benchmark::State& state) { measure<Own>(state, row_of(static_cast<int>(state.range(0)))); }
+void row_own(benchmark::State& state) { measure<SteplapLu>(state, row_of(static_cast<int>(state.range(0)))); }
 void row_klu(benchmark::State& state) { measure<Klu>(state, row_of(static_cast<int>(state.range(0)))); }
-void grid_own(benchmark::State& state) { measure<Own>(state, grid_of(static_cast<int>(state.range(0)))); }
+void grid_own(benchmark::State& state) { measure<SteplapLu>(state, grid_of(static_cast<int>(state.range(0)))); }
 void grid_klu(benchmark::State& state) { measure<Klu>(state, grid_of(static_cast<int>(state.range(0)))); }
 
 BENCHMARK(row_own)->Arg(3)->Arg(10)->Arg(100)->Arg(1000);

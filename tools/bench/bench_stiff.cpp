@@ -1,10 +1,10 @@
-// Measures the cost of stiffness: the paper's transformer on feet that are 1, 100 and 10 000 times stiffer (springs and dampers), with
-// explicit and implicit methods at equal error. The limbs are held (joints as monitors), so that the three scenes differ in stiffness only
-// and not in which joint slips at impacts.
+// Measures the cost of stiffness: the paper's transformer with springs and dampers of its feet multiplied by 1, 100 and 10 000, with
+// explicit and implicit methods at equal error. The joints are monitors, which never slip, so that the three scenes differ in stiffness
+// only.
 //
-// The error is the larger of that of the active part's pitch and that of the bottom arresting force over 1 kHz samples, each divided by its
-// range. The reference is dop853 at 1e-12, with which rodas5p at 1e-10 must agree. The cost is the CPU time of this thread, the minimum of
-// several runs, and the number of evaluations, both interpolated between tolerances at the required errors.
+// The error is the larger one of two: of the active part's pitch, and of the bottom arresting force, over 1 kHz samples and relative to
+// their ranges. The reference is dop853 at 1e-12, with which rodas5p at 1e-10 must agree. The cost is the CPU time of this thread, minimum
+// of several runs, and the number of evaluations, both interpolated between tolerances at the required errors.
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "transformer/catalog.h"
@@ -27,7 +27,7 @@ struct SolverCost {
 
 RunResult run(const System& system, const Model& model, const std::string& method, double tolerance, bool is_sampled) {
   SimulationOptions options = options_of(model);
-  options.has_extremes = false; // not needed here, and would double the time
+  options.has_extremes = false; // not needed, and would double the time
   options.integrator = method;
   options.settings.tolerance = tolerance;
   options.output_step = is_sampled ? 1e-3 : 0.0;
@@ -56,7 +56,7 @@ SolverCost measure(const System& system, const Model& model, const std::string& 
   return entry;
 }
 
-// Returns the smallest cost for this error, by power-law interpolation between neighbouring tolerances; NaN if it is not reached.
+// Returns the smallest cost for this error, by power-law interpolation between neighbouring tolerances; NaN if no tolerance reaches it.
 double cost_at(const std::vector<SolverCost>& ladder, double error, double SolverCost::*cost) {
   double least = std::nan("");
   for (std::size_t i = 0; i < ladder.size(); ++i) {

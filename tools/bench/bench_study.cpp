@@ -1,5 +1,5 @@
-// Measures the overhead of a study of the paper's transformer: runs the same samples by a hand-written loop, in three steps from the bare
-// integration (dop853, with event location) to everything that the study does with each sample.
+// Measures the overhead of a study of the paper's transformer. A hand-written loop runs the same samples, in three steps from the bare
+// integration (dop853, with event location) to all that the study does with each sample.
 //
 //   steplap study export STORE > samples.csv      of models/studies/slip_probability.toml
 //   bench_study samples.csv
@@ -21,10 +21,11 @@ using namespace steplap;
 namespace {
 
 struct Samples {
-  std::vector<std::vector<double>> values; ///< floor friction, joint friction, pressure, shock
+  std::vector<std::vector<double>> values; ///< per sample: floor friction, joint friction, pressure, shock
 };
 
-// Parses the columns number, status, reason, error, evaluations and the four variables. Some contain words, so the line is split here.
+// Parses the columns number, status, reason, error, evaluations and the four variables. Some columns contain words, so the CSV reader for
+// numbers cannot be used.
 Samples read_samples(const char* file) {
   std::ifstream stream(file);
   std::string line;

@@ -1,8 +1,8 @@
-// Measures the machine code of a tape: time per tape step for compilation and for execution, in nanoseconds, for each instruction set of
-// the processor, in comparison with replay.
+// Measures machine code generated from a tape: time per tape step for compilation and for execution, ns, for each instruction set of the
+// processor, in comparison with interpreted replay.
 //
 // The tape is synthetic and resembles an evaluation: sums of products along about a dozen parallel chains, every third operand an input or
-// a constant, every tenth value used again much later, two percent divisions, one square root, one condition.
+// a constant, every tenth value used again much later, 2 % divisions, one square root, one condition.
 #include "mbd/tape/machine_code.h"
 #include "mbd/tape/register_plan.h"
 
@@ -41,7 +41,7 @@ Tape evaluation_like(int steps) {
     const TapeOperation o = q < 4 ? divide : q < 100 ? multiply : q < 160 ? add : subtract;
     tape.steps.push_back({o, chain, other});
     chain = made;
-    if (q == 199) { // square roots and conditions that are always true
+    if (q == 199) { // square roots, and conditions that are always true
       tape.steps.push_back({absolute, chain, 0});
       tape.steps.push_back({square_root, made + 1, 0});
       chain = made + 2;
@@ -55,7 +55,7 @@ Tape evaluation_like(int steps) {
   return simplified(tape);
 }
 
-// Steps that are executed: all except those for inputs and constants.
+// Returns the number of executed steps: all except inputs and constants.
 int count_steps(const Tape& tape) {
   int count = 0;
   for (const TapeStep& s : tape.steps) count += !is_given(s.operation);
@@ -97,7 +97,7 @@ void run(benchmark::State& state, InstructionSet set) {
   std::vector<double> outputs(tape.outputs.size());
   for (auto _ : state) {
     benchmark::DoNotOptimize(code.run(inputs.data(), tape.constants.data(), outputs.data()));
-    inputs[0] = 0.5 + 1e-3 * (outputs[0] > 0.0); // the next evaluation depends on this one, as between stages
+    inputs[0] = 0.5 + 1e-3 * (outputs[0] > 0.0); // makes the next evaluation depend on this one, as between stages
     benchmark::ClobberMemory();
   }
   print_per_step(state, tape);

@@ -32,18 +32,19 @@ namespace {
 using peers::Rung;
 
 constexpr double k_tightest = 1e-13;
-constexpr double k_longest_run = 10.0; // CPU time, s; slower settings have no row
+constexpr double k_longest_run = 10.0; // CPU time, s; settings that take longer are omitted
 
 struct ComparedModel {
   Model model;
   std::unique_ptr<const System> system;
-  std::vector<std::string> channels; // channels in the order in which `error` reads them
+  std::vector<std::string> channels; // channels, in the order of the arguments of `error`
   double sample_step = 0.0;          // sampling step, s
 };
 
 struct Problem {
-  std::string name;         // name used by the peers
-  bool is_against_tightest; // otherwise the solution is known
+  std::string name; // name used by the peers
+  // true if the reference is the program's own run with the tightest tolerance; otherwise the exact solution is known
+  bool is_against_tightest;
   std::vector<ComparedModel> scenes;
   // Computes the error from the channels of one run and of the run with the tightest tolerance.
   std::function<double(const std::vector<std::vector<double>>&, const std::vector<std::vector<double>>&)> error;
@@ -62,7 +63,7 @@ RunResult run(const ComparedModel& scene, const std::string& method, double tole
   options.settings.step = 0.0;
   options.channels = scene.channels;
   options.output_step = is_sampled ? scene.sample_step : 0.0;
-  options.has_extremes = false; // the other programs compute none
+  options.has_extremes = false; // the compared programs compute no extremes
   const double begin = thread_cpu_seconds();
   Simulation simulation(*scene.system, scene.system->initial_state(), options);
   while (simulation.advance())
@@ -136,7 +137,7 @@ std::vector<Problem> problems() {
   all.push_back(andrews("B1 A03 0.05 s", "andrews_a03", 1));
   for (const peers::FourBarExact& exact : peers::k_four_bar_exact) {
     const std::string n = std::to_string(exact.windows);
-    // B0 is as far from the rod's middle as the middle is from the ground.
+    // point B0 is the reflection of the ground pin about the rod's middle
     all.push_back(ending(("B2 N = " + n).c_str(), "four_bar_" + n, {"rod 0.x", "rod 0.y"}, {exact.x, exact.y}, 2.0));
   }
   all.push_back(ending("B3 pendulum", "simple_pendulum", {"bob.x", "bob.y"}, {peers::k_pendulum_x, peers::k_pendulum_y}));
@@ -148,7 +149,7 @@ std::vector<Problem> problems() {
   return all;
 }
 
-// --- the ladder ---------------------------------------------------------------------------------
+// --- measurement over tolerances ----------------------------------------------------------------
 
 Rung measure(const Problem& problem, const std::string& method, double tolerance, const std::vector<Series>& tightest) {
   char setting[32];

@@ -19,7 +19,7 @@ using namespace steplap;
 
 namespace {
 
-constexpr int k_batches = 20; // the minimum of the batches is least disturbed by other processes
+constexpr int k_batches = 20; // number of batches, of which the fastest is used, because other processes disturb it least
 
 void profile(const char* path, double time, long count, const std::string& coordinates) {
   const Model model = read_model(path, transformer_catalog());
@@ -34,7 +34,7 @@ void profile(const char* path, double time, long count, const std::string& coord
   std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
   dynamics.pack(state, y.data());
   const double later = std::nextafter(state.t, std::numeric_limits<double>::infinity());
-  // Alternates between two times, so that values cached per time give no advantage.
+  // Alternates between two times, so that values cached for one time are not reused.
   const auto nanoseconds = [&](const auto& evaluate) {
     double best = std::numeric_limits<double>::infinity();
     for (int batch = 0; batch < k_batches; ++batch) {

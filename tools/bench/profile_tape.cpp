@@ -1,4 +1,4 @@
-// Records one evaluation of a model at a given time on a tape (mbd/tape) and measures recording, simplification and code generation, and an
+// Records one evaluation of a model at a given time on a tape (mbd/tape). Measures recording, simplification and code generation, and an
 // evaluation with and without machine code. Prints the minimum of many batches.
 //
 //   profile_tape MODEL TIME

@@ -1,15 +1,14 @@
 #!/usr/bin/python3
-"""What a shock recorder must be able to do, so that its record tells whether a joint of the core slipped.
+"""Determines which properties a shock recorder needs, so that its record shows whether a joint of the core slipped.
 
-A model runs. A recorder on the lid is made up from its acceleration: low-pass, rate of sampling, offset, noise and bits.
-`steplap record` reads the file, `prescribed_motion` drives the recorder's place as recorded, and the model runs again from rest,
-without being told what the vehicle did. Both runs are compared: the clamping pressure that the joints need, slip yes or no,
-the time of the first slip, the distances slid.
+A model is run. Its acceleration at the recorder's position gives a synthetic record, with low-pass filter, sampling rate, offset, noise and
+resolution. `steplap record` reads this record, and the model is run again from rest, with its recorder driven as recorded (`prescribed_motion`)
+instead of by the vehicle. The two runs are compared: clamping pressure required by the joints, slip or no slip, time of the first slip, slides.
 
     tools/bench/record_round_trip.py build/release/bin/steplap             the tables of docs/evidence/recorders.md
-    tools/bench/record_round_trip.py build/release/bin/steplap --check     a few of them against bounds; exit code 1 beyond
+    tools/bench/record_round_trip.py build/release/bin/steplap --check     some of them compared with bounds; exit code 1 if exceeded
 
-Everything is seeded: the same numbers come out each time. Only the standard library of Python is needed.
+Random numbers are seeded, so results are reproducible. Only the standard library of Python is needed.
 """
 import argparse
 import concurrent.futures
@@ -27,49 +26,49 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 MODEL = os.path.join(HERE, "..", "..", "models", "paper", "weak_clamping.toml")
-GRAVITY = 9.80665  # of the recorder's unit, m/s^2
-LOCAL = 9.81       # of the model, m/s^2
-FINE = 1e-4        # s between samples of the truth
-QUIET = 0.5        # s of rest before the run, over which the recorder's offset is seen
-END = 0.8          # s
+GRAVITY = 9.80665  # m/s², unit g of the recorder
+LOCAL = 9.81       # m/s², gravity of the model
+FINE = 1e-4        # output step of the true run, s
+QUIET = 0.5        # duration of rest before the run, from which the offset is determined, s
+END = 0.8          # duration of the run, s
 JOINTS = ("front joint", "back joint")
-FIRM = 80e3        # Pa: no joint comes near to slipping at this pressure in either impact
-PATIENCE = 120.0   # s that a run may take; records that lead nowhere may take an hour
+FIRM = 80e3        # Pa; at this pressure no joint comes close to slipping in either impact
+PATIENCE = 120.0   # largest time for a run, s; runs with unrealistic records may take an hour
 
 
 @dataclasses.dataclass(frozen=True)
 class Impact:
     name: str
-    peak: float      # m/s^2, of the vehicle
+    peak: float      # peak acceleration of the vehicle, m/s²
     duration: float  # s
-    is_rigid: bool = False # the tank: its upper part is welded to the lower one, which it else shears on
+    is_rigid: bool = False # true: the upper part of the tank is welded to the lower one; false: it shears on it
 
 
-# The paper's emergency stop, and a similar one that is harder and as short as the coupling of wagons.
+# the paper's emergency stop, and a harder stop as short as the coupling of wagons
 STOP = Impact("stop", -5.886, 0.1)
 SHUNT = Impact("shunt", -19.62, 0.025)
 RIGID_STOP, RIGID_SHUNT = (dataclasses.replace(i, name=i.name + " with a rigid tank", is_rigid=True) for i in (STOP, SHUNT))
-# Candidate places of the recorder: body, and point in the settled pose. The vehicle's motion is that of the lower tank's centre of gravity.
+# possible positions of the recorder: body, and point in the equilibrium pose; the vehicle's motion is that of the lower tank's centre
 PLACES = {"frame": ("lower tank", (0.0, 0.79)), "floor": ("lower tank", (0.0, 0.0)), "far end": ("lower tank", (1.5, 0.79)),
           "wall": ("upper tank", (1.81, 1.95)), "lid": ("upper tank", (0.0, 4.0))}
-# Pressures as fractions of those that the joints need: both slip at the first, both hold at the second.
+# pressures relative to those that the joints need: both joints slip at the first, both hold at the second
 WEAK, STRONG = 0.875, 1.15
 
 
 @dataclasses.dataclass(frozen=True)
 class Recorder:
-    rate: float = 200.0      # Hz
+    rate: float = 200.0      # sampling rate, Hz
     bits: int = 12
-    reach: float = 10.0      # g at the ends of the scale
-    noise: float = 5.0       # mg, standard deviation
-    offset: float = 20.0     # mg on both axes
-    low_pass: float = 0.4    # -3 dB of the recorder's own filter of two poles, as a share of the rate; 0: none
-    frequency_class: int = 0 # of the low-pass when the file is read; 0: none
-    rest: bool = True        # the offset is taken from the quiet stretch, else gravity alone is subtracted
-    tilt: float = 0.0        # degrees by which the recorder is mounted askew
-    axes: str = "x"          # that are driven
-    place: str = "frame"     # of PLACES
-    drive: str = "place"     # what moves as recorded: the recorder's "place", or the "vehicle" so that the record comes out
+    reach: float = 10.0      # largest reading, g
+    noise: float = 5.0       # standard deviation of the noise, mg
+    offset: float = 20.0     # offset of both axes, mg
+    low_pass: float = 0.4    # -3 dB frequency of the recorder's two-pole filter, relative to the sampling rate; 0: no filter
+    frequency_class: int = 0 # channel frequency class with which the file is read; 0: none
+    rest: bool = True        # true: the mean over the interval at rest is subtracted; false: gravity only
+    tilt: float = 0.0        # rotation of the mounted recorder, degrees
+    axes: str = "x"          # axes along which the model is driven
+    place: str = "frame"     # position of the recorder, a key of PLACES
+    drive: str = "place"     # body with the recorded motion: the recorder's "place", or the "vehicle", such that the record results
 
 
 def toml(base, impact, pressure, body):
@@ -82,7 +81,7 @@ def toml(base, impact, pressure, body):
 
 def steplap(program, *arguments):
     done = subprocess.run([program, *arguments], capture_output=True, text=True, check=False, timeout=PATIENCE)
-    if done.returncode not in (0, 4): # 4: a verdict that is open is of no interest here
+    if done.returncode not in (0, 4): # 4: the verdict is open, which does not matter here
         raise RuntimeError(f"steplap {' '.join(arguments)}: {done.stderr}")
     return done.stdout
 
@@ -100,14 +99,14 @@ def simulate(program, folder, name, text):
 
 
 def rows_of(path):
-    """Rows of a CSV file of steplap: values by the names of their columns, without units."""
+    """Yields the rows of a CSV file of steplap as dictionaries with the column names, without units, as keys."""
     with open(path, encoding="utf-8") as file:
         for row in csv.DictReader(line for line in file if not line.startswith("#")):
             yield {name.split(" [")[0]: float(value) for name, value in row.items()}
 
 
 def true_run(program, folder, impact, pressure, name):
-    """Returns the joints of the run, and for each place ax, ay and angle from t = -QUIET on."""
+    """Runs the model. Returns the joints, and for each place ax, ay and angle from t = -QUIET on."""
     columns = [f"{place}.{axis}" for place in PLACES for axis in ("ax", "ay")]
     body = (f'[output]\nstep = {FINE!r}\nchannels = {json.dumps(columns + ["upper tank.theta"])}\nalso = {json.dumps(columns)}\n'
             f'[simulation]\nend = {END!r}\n')
@@ -123,7 +122,7 @@ def true_run(program, folder, impact, pressure, name):
 
 
 def low_passed(values, cutoff):
-    """Butterworth filter of two poles, forwards only, as an analogue one before the sampling: it delays by 0.225/cutoff."""
+    """Applies a two-pole Butterworth filter forwards, like an analogue filter before sampling. It delays by 0.225/cutoff."""
     if not cutoff:
         return values
     k = math.tan(math.pi * cutoff * FINE)
@@ -140,7 +139,7 @@ def low_passed(values, cutoff):
 
 
 def write_record(path, motion, recorder, seed):
-    """The recorder measures acceleration less gravity, in its own axes, which tilt with the lid; in g."""
+    """Writes the record: acceleration minus gravity in the recorder's axes, which tilt with the lid; in g."""
     dice = random.Random(seed)
     step = 2.0 * recorder.reach / 2 ** recorder.bits
     ax, ay, angles = motion[recorder.place]
@@ -167,7 +166,7 @@ def write_record(path, motion, recorder, seed):
 
 
 def read_record(program, folder, path, recorder):
-    """Returns the path of the cleaned signal made by steplap record."""
+    """Reads a record by `steplap record`. Returns the path of the conditioned signal."""
     out = os.path.join(folder, "record")
     options = ["--rest", f"0,{QUIET - 0.05}"] if recorder.rest else ["--gravity", "y"]
     if recorder.frequency_class:
@@ -177,7 +176,7 @@ def read_record(program, folder, path, recorder):
 
 
 def replay_text(impact, pressure, signal, recorder):
-    """Moves the recorder's place as recorded. "held": this replaces vehicle and springs, and its body does not turn, as in steplap assess."""
+    """Returns a model text that moves the recorder as recorded. "held": this replaces vehicle and springs, and the body does not turn."""
     text = '[simulation]\nvelocity = [0.0, 0.0]\n' + f"end = {END!r}\n" + '[[element]]\nname = "vehicle"\nremove = true\n'
     if recorder.drive == "held":
         text += ('[[element]]\nname = "front suspension"\nremove = true\n[[element]]\nname = "rear suspension"\nremove = true\n'
@@ -196,19 +195,19 @@ def slid(joint):
     return math.hypot(joint["slid_x"], joint["slid_y"])
 
 
-# --- the vehicle's motion that moves the recorder's place as recorded ---------------------------------------------------------------
-# The drive is piecewise linear with GRID between its corners. Runs with one small corner each give the columns of a linear map from drive
-# to record. A least-squares fit of the record's misfit, regularised by the roughness of the drive, gives a correction. Several runs repeat
-# this, because feet slide and lift. Shaking tables reproduce a record in the same way. Only along x.
-GRID, ROW = 4e-3, 2e-3 # s between corners, between compared samples
-DOUBT = 0.5            # m/s^2, of a compared sample
-ROUGH = 1.0            # m/s^2, usual second difference of the drive
-GAIN, REPEATS = 0.6, 8 # share of a correction that is made; runs
-CORNER = 0.05          # m/s^2, of the small one
+# --- motion of the vehicle that reproduces the record --------------------------------------------------------------------------------
+# The drive is a piecewise linear acceleration with GRID between its corners, along x only. Runs with one small corner each give the columns
+# of a linear map from drive to record. The drive is corrected by a least-squares fit to the misfit of the record, regularised by the
+# roughness of the drive. This is repeated over several runs, because feet slide and lift. Shaking tables reproduce records in the same way.
+GRID, ROW = 4e-3, 2e-3 # s between corners; s between compared samples
+DOUBT = 0.5            # standard deviation of a compared sample, m/s²
+ROUGH = 1.0            # usual second difference of the drive, m/s²
+GAIN, REPEATS = 0.6, 8 # fraction of the computed correction that is applied; number of runs
+CORNER = 0.05          # size of the small corner, m/s²
 
 
 def vehicle_run(program, folder, name, impact, pressure, drive, place):
-    """Returns the joints and the record along x for a vehicle's acceleration with these corners."""
+    """Runs the model with a vehicle acceleration that has these corners. Returns the joints and the record along x."""
     path = os.path.join(folder, name + "_drive.csv")
     with open(path, "w", encoding="utf-8") as file:
         file.write("t [s],a [m/s^2]\n" + "".join(f"{i * GRID:.6f},{a!r}\n" for i, a in enumerate(drive)))
@@ -246,7 +245,7 @@ def solve(lower, right):
 
 
 def roughness(corners):
-    """Returns the matrix of the weighted squares of second differences, with a small multiple of the identity, so that it can be inverted."""
+    """Returns the matrix of the weighted squared second differences. A small multiple of the identity makes it invertible."""
     weights = [[0.0] * corners for _ in range(corners)]
     for k in range(1, corners - 1):
         for a, p in ((k - 1, 1), (k, -2), (k + 1, 1)):
@@ -259,7 +258,7 @@ def roughness(corners):
 
 @functools.lru_cache(maxsize=None)
 def map_of(program, impact, place): # the tank belongs to the impact
-    """Returns columns of the linear map, weights of the drive, factor of the normal equations."""
+    """Returns the columns of the linear map from drive to record, the weights of the drive, and the factor of the normal equations."""
     corners, stride = round(END / GRID) + 1, round(GRID / ROW)
     with tempfile.TemporaryDirectory() as folder:
         single = [CORNER if i == 1 else 0.0 for i in range(corners)]
@@ -273,7 +272,7 @@ def map_of(program, impact, place): # the tank belongs to the impact
 
 
 def vehicle_sought(program, folder, impact, pressure, signal, recorder):
-    """Returns the joints of the run whose record along x is nearest to the given one, found by a few runs."""
+    """Searches the drive of the vehicle that best reproduces the record along x, in a few runs. Returns the joints of the best run."""
     rows = [list(row.values()) for row in rows_of(signal)]
     first, step, values = rows[0][0] - QUIET, rows[1][0] - rows[0][0], [row[1] for row in rows]
 
@@ -293,8 +292,8 @@ def vehicle_sought(program, folder, impact, pressure, signal, recorder):
 @dataclasses.dataclass
 class Truth:
     impact: Impact
-    pressures: dict  # "firm", "strong", "weak": Pa
-    joints: dict     # of the runs at them
+    pressures: dict  # pressures of the runs "firm", "strong", "weak", Pa
+    joints: dict     # joints of these runs
     motion: dict
 
     def needed(self, joint):
@@ -314,7 +313,7 @@ def truth_of(program, folder, impact):
 
 
 def compared(program, truth, recorder, seed):
-    """Returns the errors of one record: required pressure, slip times, slid distances, joints judged wrongly. None: a run did not end."""
+    """Returns the errors due to one record: required pressure, slip times, slides, joints judged wrongly. None if a run did not end."""
     runs = {}
     with tempfile.TemporaryDirectory() as folder:
         for name, pressure in truth.pressures.items():
@@ -339,8 +338,8 @@ def compared(program, truth, recorder, seed):
     return {"pressure": worst(pressure), "time": worst(time), "distance": worst(distance), "wrong": wrong}
 
 
-# Variations, one quantity at a time: heading, and the recorders with their names. A recorder on the frame, at the height at which the
-# vehicle's force enters, driven along x, leaves only the record as a source of error.
+# Returns the variations of one quantity at a time: heading, and recorders with their names. With a recorder on the frame, at the height at
+# which the vehicle's force acts, driven along x, the record is the only source of error.
 def record_tables():
     base, fast = Recorder(), Recorder(rate=1000.0)
     vary = dataclasses.replace
@@ -358,7 +357,7 @@ def record_tables():
     ]
 
 
-# Place of the recorder, and treatment of its record.
+# Returns variations of the recorder's position and of the treatment of its record.
 def way_tables():
     fast = Recorder(rate=1000.0)
     vary = dataclasses.replace
@@ -371,7 +370,7 @@ def way_tables():
 
 
 def row_of(errors):
-    """Returns the largest error of all seeds; the spread of the seeds shows how much is chance."""
+    """Returns a table row with the largest error over all seeds."""
     if any(e is None for e in errors):
         return f"no end within {PATIENCE:g} s | | | | "
     worst = {key: max((e[key] for e in errors), key=lambda v: (not math.isnan(v), abs(v))) for key in ("pressure", "time", "distance")}
@@ -402,9 +401,9 @@ def print_tables(program, truth, tables, seeds, pool):
             print(f"| {name} | {row_of([f.result() for f in futures])} |", flush=True)
 
 
-# Bounds for the part that tests run: with a recorder on the frame, slip or no slip must be right, the pressure to 4 %, times to 8 ms and
-# distances to 0.2 mm, twice the errors in the tables. A filter at 10 Hz in the recorder delays by 0.225/10 Hz = 23 ms, and a drive of the
-# lid acts at the wrong place: a comparison that does not detect these detects nothing.
+# Checks that slip is detected correctly with a recorder on the frame, and that errors are below 4 % for the pressure, 8 ms for times and
+# 0.2 mm for distances, twice those in the tables. Also checks that two faults are detected: a recorder's filter at 10 Hz, which delays by
+# 0.225/10 Hz = 23 ms, and a drive of the lid, which acts at the wrong place.
 def check(program, truth):
     good = compared(program, truth, Recorder(), 0)
     slow = compared(program, truth, Recorder(rate=1000.0, low_pass=0.01), 0)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Draws what Neovim shows of a model, with checking and completion by taplo's server, as SVG: the terminal's own cells and colours.
+"""Draws the screen of Neovim with a model, checked and completed by taplo's language server, as SVG with the terminal's characters and colours.
 
-usage: photograph_editor.py STEPLAP OUTPUT_FOLDER; needs neovim, python3-pyte, and what tools/editors/check_schema needs
+usage: photograph_editor.py STEPLAP OUTPUT_FOLDER; requires neovim, python3-pyte, and the requirements of tools/editors/check_schema
 """
 import fcntl
 import html
@@ -76,7 +76,7 @@ class Terminal:
                  f'<rect width="100%" height="100%" rx="6" fill="{paper}" stroke="#bbbbbb"/>', '<g font-family="DejaVu Sans Mono, monospace" font-size="14" xml:space="preserve">']
         for y in range(ROWS):
             x = 0
-            while x < COLUMNS:  # runs of cells that look the same
+            while x < COLUMNS:  # groups adjacent cells of equal style
                 cell, begin = self.screen.buffer[y][x], x
                 look = (cell.fg, cell.bg, cell.bold, cell.underscore, cell.reverse)
                 text = ""

@@ -1,5 +1,5 @@
-// taplo's language server over the standard input and output, as editors speak to it. It is the one in the extension "Even Better TOML" for
-// VS Code, and comes from npm: npm install @taplo/lsp in the folder of this file or above it, or NODE_PATH leading to it.
+// Runs taplo's language server on standard input and output, as editors expect it. The server is that of the VS Code extension "Even Better
+// TOML". Install it with npm install @taplo/lsp in the folder of this file or a parent folder, or set NODE_PATH.
 const fs = require("fs"), path = require("path"), url = require("url");
 const { TaploLsp } = require("@taplo/lsp");
 function findConfigFile(from) {

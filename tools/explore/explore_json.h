@@ -14,23 +14,23 @@ namespace steplap {
 /// Request for one run.
 struct RunRequest {
   std::size_t model = 0;   ///< index of the model
-  ExploredValues values;   ///< SI
-  std::string page;        ///< identifier chosen by the page
-  bool is_settled = false; ///< true: also estimate errors
+  ExploredValues values;   ///< values to set, SI
+  std::string page;        ///< identifier of the requesting page, chosen by it
+  bool is_settled = false; ///< true if errors must be estimated, too
   std::string name;        ///< name of the file to save, if any
 };
 
-/// Request for a map of two values.
+/// Request for the verdicts at points of a plane of two values.
 struct MapRequest {
   std::size_t model = 0;
   ExploredValues values;
-  std::string x, y;                             ///< paths
-  std::vector<std::pair<double, double>> cells; ///< pairs of values of x and y
+  std::string x, y;                             ///< paths of the two values
+  std::vector<std::pair<double, double>> cells; ///< values of x and y of each requested run
 };
 
 /// Result of one run of a map.
 struct MapCell {
-  std::string verdict, error;                         ///< error: there is no result
+  std::string verdict, error;                         ///< reason why there is no result; "" if there is one
   std::vector<std::pair<std::string, double>> shares; ///< utilisation of each limit by name (mbd/run/utilisation.h)
 };
 

@@ -20,7 +20,7 @@ void ExploredModel::read() {
   try {
     given = std::make_unique<const Model>(read_given_model(path_, program_catalogue(), overrides_));
   } catch (...) {
-    note_files(); // their present contents may contain the error
+    note_files(); // watches the files that were read, also after an error
     throw;
   }
   files_.clear();
@@ -55,7 +55,7 @@ std::shared_ptr<const LoadedModel> ExploredModel::loaded_from_file(const Explore
   return load_model(path_, all);
 }
 
-// Reading a file takes longer than most runs. Values are therefore set in the loaded model where possible.
+// Returns the model with these values. Sets them in the loaded model where possible, because reading a file takes longer than most runs.
 std::shared_ptr<const LoadedModel> ExploredModel::loaded_with(const ExploredValues& values) {
   if (!given_) throw ModelError({path_, 0, 0}, "the file has not been read without errors yet");
   std::vector<std::string> paths;

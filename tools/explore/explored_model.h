@@ -19,24 +19,24 @@ using ExploredValues = std::map<std::string, double>;
 /// One model file. Not thread-safe.
 class ExploredModel {
 public:
-  /// `overrides` are settings "path=value" applied to the file before all other changes. Reads nothing yet.
+  /// `overrides`: settings "path=value", applied to the file first. The file is read by read().
   ExploredModel(std::string path, std::vector<std::string> overrides) : path_(std::move(path)), overrides_(std::move(overrides)) {}
 
-  /// Reads the file. Throws ModelError with all its errors; the model read before then stays in use.
+  /// Reads the file. Throws ModelError with all errors; the previously read model then remains in use.
   void read();
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] const std::vector<std::string>& overrides() const { return overrides_; }
-  /// Returns the sliders of the file as read last.
+  /// Returns the sliders of the file, as it was when last read.
   [[nodiscard]] const std::vector<Slider>& sliders() const { return sliders_; }
-  /// Title of the model; "" if it has none.
+  /// Returns the title of the model; "" if it has none.
   [[nodiscard]] const std::string& title() const { return title_; }
-  /// Returns all files that the last reading accessed, even if it failed.
+  /// Returns all files accessed by the last call of read(), even if it failed.
   [[nodiscard]] const std::vector<std::string>& files() const { return files_; }
   /// Returns true if a model has been read without errors.
   [[nodiscard]] bool is_read() const { return given_ != nullptr; }
 
-  /// Runs and judges the model with these values. The model of the report has no text and no overrides. Throws ModelError if a path has no
-  /// slider or the values are invalid, NumericalFailure if the run could not start.
+  /// Runs and judges the model with these values, SI. The report contains neither the model's text nor overrides. Throws ModelError if a
+  /// path has no slider or a value is invalid, NumericalFailure if the run could not start.
   [[nodiscard]] Report run(const ExploredValues& values, const RunOptions& options);
   /// As run(), but reads the file with these values as overrides, like `steplap simulate`.
   [[nodiscard]] Report run_from_file(const ExploredValues& values, const RunOptions& options) const;
@@ -52,7 +52,7 @@ private:
   std::vector<std::string> overrides_, files_;
   std::unique_ptr<const Model> given_;
   std::vector<Slider> sliders_;
-  std::map<std::string, std::size_t> by_path_; ///< index in `sliders_`
+  std::map<std::string, std::size_t> by_path_; ///< index in `sliders_` by path
   std::vector<std::string> varied_;            ///< paths for which `variants_` was prepared
   std::unique_ptr<Variants> variants_;
 };

@@ -16,11 +16,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Scripts and styles come from the server only. Styles that scripts set on elements are attributes.
+// Content-Security-Policy of the page: scripts and styles from this server only. Style attributes are allowed because scripts set them.
 constexpr const char* k_page_policy =
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; connect-src 'self'; img-src 'self' data: blob:; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-// A report is a single file with inline scripts. Its sandbox gives it a separate origin, which the gate refuses.
+// Policy of a report, which is one file with inline scripts. The sandbox gives it a separate origin, from which the gate refuses requests.
 constexpr const char* k_report_policy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
     "form-action 'none'; frame-ancestors 'none'; sandbox allow-scripts allow-downloads allow-modals";
@@ -35,7 +35,7 @@ Diagnostic problem_at(const std::string& file, const std::string& message) {
 PageReply json_reply(std::string text) { return {200, "application/json", std::move(text)}; }
 PageReply plain_reply(int status, const std::string& text) { return {status, "text/plain; charset=utf-8", text + "\n"}; }
 
-// Reports invalid values to the page as errors. Any other exception is a bug and is reported, too.
+// Runs `work`. Invalid values become errors in the reply; other exceptions are bugs and become an error, too.
 PageReply guarded(const std::function<PageReply()>& work) {
   try {
     return work();
@@ -62,7 +62,7 @@ PageReply run_reply(ExploredModel& model, const RunRequest& asked, const WorkQue
   return json_reply(run_json(report, version, Explorer::k_drag_budget));
 }
 
-// Computes the cells of a map in their order until the time limit.
+// Runs the cells of a map in order until the time limit or a more urgent request, and returns the results so far.
 PageReply map_reply(ExploredModel& model, const MapRequest& asked, const WorkQueue::IsStale& is_stale) {
   const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(Explorer::k_map_seconds));
   std::vector<MapCell> cells;
@@ -81,7 +81,7 @@ PageReply map_reply(ExploredModel& model, const MapRequest& asked, const WorkQue
     } catch (const NumericalFailure& failure) {
       cell.error = failure.what();
     }
-    if (is_stale()) break; // stopped before it was complete
+    if (is_stale()) break; // the interrupted run has no valid result
     cells.push_back(std::move(cell));
   }
   return json_reply(map_json(cells));
@@ -112,8 +112,8 @@ PageReply asset_reply(const char* type, std::string_view text) {
 Explorer::Explorer(const std::vector<std::string>& paths, const std::vector<std::string>& overrides) {
   std::vector<Diagnostic> problems;
   for (const std::string& path : paths) {
-    models_.push_back(std::make_unique<Watched>(Watched{ExploredModel(path, overrides), "", {}}));
-    Watched& one = *models_.back();
+    models_.push_back(std::make_unique<WatchedModel>(WatchedModel{ExploredModel(path, overrides), "", {}}));
+    WatchedModel& one = *models_.back();
     try {
       one.model.read();
       one.state = model_state_json(one.model, {});
@@ -147,7 +147,7 @@ void Explorer::read_again(std::size_t k) {
     models_[k]->is_reading = true;
   }
   const bool is_taken = queue_->add(WorkQueue::Urgency::page, "", [this, k](const WorkQueue::IsStale&) {
-    Watched& one = *models_[k];
+    WatchedModel& one = *models_[k];
     std::vector<Diagnostic> problems;
     try {
       one.model.read();
@@ -171,7 +171,7 @@ void Explorer::read_again(std::size_t k) {
 
 void Explorer::tick() {
   for (std::size_t k = 0; k < models_.size(); ++k) {
-    Watched& one = *models_[k];
+    WatchedModel& one = *models_[k];
     {
       const std::lock_guard lock(mutex_);
       if (one.is_reading) continue;
@@ -189,8 +189,8 @@ void Explorer::tick() {
     version = version_;
   }
   const auto now = Clock::now();
-  const auto is_due = [&](const Waiting& w) { return *w.is_gone || w.since != version || now > w.until; };
-  for (Waiting& w : waiting_)
+  const auto is_due = [&](const WaitingRequest& w) { return *w.is_gone || w.since != version || now > w.until; };
+  for (WaitingRequest& w : waiting_)
     if (is_due(w)) w.send(json_reply(state_text()));
   std::erase_if(waiting_, is_due);
 }

@@ -29,12 +29,12 @@
 
 namespace steplap {
 
-/// Answers the requests of pages. A separate thread does the work.
+/// Answers the requests of pages. Runs are computed on a separate thread.
 class Explorer {
 public:
-  static constexpr double k_map_seconds = 0.2;         ///< computing time for one request for a map, s
-  static constexpr std::size_t k_most_cells = 400;     ///< per request for a map
-  static constexpr std::size_t k_drag_budget = 300000; ///< bytes of curves in the reply to a run
+  static constexpr double k_map_seconds = 0.2;         ///< computing time for one map request, s
+  static constexpr std::size_t k_most_cells = 400;     ///< largest number of cells in one map request
+  static constexpr std::size_t k_drag_budget = 300000; ///< size of the curves in a reply, bytes
   static constexpr int k_longest_wait = 20;            ///< timeout of a request for the state, s
 
   /// Reads the models. Throws ModelError with the errors of all.
@@ -51,19 +51,19 @@ public:
   void end();
 
 private:
-  struct Waiting {
+  struct WaitingRequest {
     long since;
     std::chrono::steady_clock::time_point until;
-    std::shared_ptr<const std::atomic<bool>> is_gone; ///< PageRequest::is_gone
+    std::shared_ptr<const std::atomic<bool>> is_gone; ///< true when the client has closed the connection
     SendReply send;
   };
-  struct Watched {
-    ExploredModel model;                   ///< used only by the queue's thread once it runs
-    std::string state;                     ///< JSON of the model in the reply to "state"; guarded by the mutex
+  struct WatchedModel {
+    ExploredModel model;                   ///< used only by the worker thread once it runs
+    std::string state;                     ///< JSON of the model in replies to "state"; guarded by the mutex
     FileWatch watch;                       ///< used only by the thread of tick()
-    bool is_reading = false;               ///< guarded by the mutex
+    bool is_reading = false;               ///< true while the worker reads the file; guarded by the mutex
     std::vector<std::string> files_read{}; ///< files of the last completed reading; guarded by the mutex
-    bool has_read = false;                 ///< true if `files_read` is to be watched; guarded by the mutex
+    bool has_read = false;                 ///< true if `files_read` has not been passed to `watch` yet; guarded by the mutex
     std::vector<std::string> watched{};    ///< files that `watch` observes
   };
 
@@ -75,10 +75,10 @@ private:
                 std::function<PageReply(const WorkQueue::IsStale&)> work);
   [[nodiscard]] std::string state_text();
 
-  std::vector<std::unique_ptr<Watched>> models_;
+  std::vector<std::unique_ptr<WatchedModel>> models_;
   std::mutex mutex_;
-  long version_ = 1;             ///< guarded by the mutex
-  std::vector<Waiting> waiting_; ///< used only by the thread of tick()
+  long version_ = 1;                    ///< version of the state, which increases with every change; guarded by the mutex
+  std::vector<WaitingRequest> waiting_; ///< used only by the thread of tick()
   std::unique_ptr<WorkQueue> queue_;
 };
 

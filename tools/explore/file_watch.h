@@ -10,13 +10,15 @@ namespace steplap {
 /// Observes a list of files.
 class FileWatch {
 public:
-  /// Sets the files to observe. A change of previously observed files that has not been reported yet is still reported.
+  /// Sets the files to be watched. A change of the previous files that was not reported yet is still reported.
   void watch(const std::vector<std::string>& files);
-  /// Returns true once after a change, as soon as two successive calls have found the files equal, so that incomplete files are not read.
+  /// Returns true once after a change, when two consecutive calls have found the same files, so that incompletely written files are not
+  /// read.
   [[nodiscard]] bool has_changed();
 
 private:
-  std::map<std::string, std::string> known_, before_; ///< path: size, time and identity; "" if the file does not exist
+  /// state of each file when last reported, and at the last call: size, time and inode; "" if it does not exist
+  std::map<std::string, std::string> known_, before_;
 };
 
 } // namespace steplap

@@ -39,23 +39,22 @@ Gate::Gate(unsigned short port, std::string token)
 
 bool Gate::is_first_path(const std::string& target) const { return is_same_secret(target, first_path_); }
 
-std::string Gate::refusal(const RequestHead& knock) const {
-  if (knock.method != "GET" && knock.method != "POST") return "only GET and POST are served";
-  if (knock.host_headers != 1 || knock.host != host_) return "the server is to be called by its own address";
-  const bool is_own = knock.origin == origin_;
-  if (!knock.origin.empty() && !is_own) return "pages of other sites are refused";
-  if (!knock.fetch_site.empty() && knock.fetch_site != "same-origin" && knock.fetch_site != "none")
-    return "pages of other sites are refused";
-  if (knock.method == "GET" && is_first_path(knock.target)) return "";
-  if (knock.target.size() < folder_.size() || !is_same_secret(knock.target.substr(0, folder_.size()), folder_))
+std::string Gate::refusal(const RequestHead& head) const {
+  if (head.method != "GET" && head.method != "POST") return "only GET and POST are served";
+  if (head.host_headers != 1 || head.host != host_) return "the server is to be called by its own address";
+  const bool is_own = head.origin == origin_;
+  if (!head.origin.empty() && !is_own) return "pages of other sites are refused";
+  if (!head.fetch_site.empty() && head.fetch_site != "same-origin" && head.fetch_site != "none") return "pages of other sites are refused";
+  if (head.method == "GET" && is_first_path(head.target)) return "";
+  if (head.target.size() < folder_.size() || !is_same_secret(head.target.substr(0, folder_.size()), folder_))
     return "the address lacks the token: use the whole address that steplap has printed";
-  if (knock.method == "POST" && !is_own) return "only the page itself may ask for that";
-  if (knock.method == "POST" && knock.content_type != "application/json") return "what is posted must be JSON";
+  if (head.method == "POST" && !is_own) return "only the page itself may ask for that";
+  if (head.method == "POST" && head.content_type != "application/json") return "what is posted must be JSON";
   return "";
 }
 
-bool Gate::takes_first(const RequestHead& knock) {
-  if (is_taken_ || knock.method != "GET" || !is_first_path(knock.target)) return false;
+bool Gate::is_first_use(const RequestHead& head) {
+  if (is_taken_ || head.method != "GET" || !is_first_path(head.target)) return false;
   return is_taken_ = true;
 }
 

@@ -1,9 +1,9 @@
-// Access control of the local server: only pages that it has sent, and users who were given its address, may use it.
+// Access control of the local server: only its own pages, and users who know its address, may send requests.
 //
-// The server listens on 127.0.0.1, where every program and every web page of this computer can reach it. Each request must therefore name
-// the server as its host (this prevents DNS rebinding by another site), contain the secret token in its path, and must not come from a page
-// of another origin. The connection must belong to the user who started the server (peer_user.h): the address that opens the browser stands
-// on its command line, which other users of the computer can read.
+// The server listens on 127.0.0.1, where every program and every web page on this computer can reach it. Each request must therefore name
+// the server as its host (which prevents DNS rebinding by another site), contain the secret token in its path, and not come from a page of
+// another origin. The connection must belong to the user who started the server (peer_user.h), because the address is on the command line
+// of the browser, which other users of the computer can read.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ struct RequestHead {
 /// Returns 32 hexadecimal digits from the system's random source. Throws std::runtime_error if it is not available.
 [[nodiscard]] std::string random_token();
 
-/// Returns true if both secrets are equal. The time of the comparison does not depend on them.
+/// Returns true if both secrets are equal. Takes the same time for all secrets of one length, so that the time reveals nothing.
 [[nodiscard]] bool is_same_secret(const std::string& a, const std::string& b);
 
 /// Access rules of one server.
@@ -39,14 +39,15 @@ public:
   [[nodiscard]] const std::string& origin() const { return origin_; }
   /// Returns "/TOKEN/".
   [[nodiscard]] const std::string& folder() const { return folder_; }
-  /// Returns a path that can be used once. It is passed on the command line of a browser. The
-  /// server redirects its first use to folder() and refuses later ones.
+  /// Returns a path for a single use, which can be passed on the command line of a browser. The server redirects its first use to folder()
+  /// and refuses further ones.
   [[nodiscard]] const std::string& first_path() const { return first_path_; }
 
-  /// Returns the reason for refusing a request; "" if it is permitted. Requests for first_path() always pass here.
-  [[nodiscard]] std::string refusal(const RequestHead& knock) const;
+  /// Returns the reason for refusing a request; "" if it is permitted. Requests for first_path() are always permitted here; is_first_use()
+  /// checks them.
+  [[nodiscard]] std::string refusal(const RequestHead& head) const;
   /// Returns true for the first request for first_path(), false for every later one.
-  [[nodiscard]] bool takes_first(const RequestHead& knock);
+  [[nodiscard]] bool is_first_use(const RequestHead& head);
 
 private:
   [[nodiscard]] bool is_first_path(const std::string& target) const;

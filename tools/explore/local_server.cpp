@@ -27,7 +27,7 @@ using Response = http::response<http::string_body>;
 
 std::string text_of(boost::string_view text) { return std::string(text.data(), text.size()); }
 
-RequestHead knock_of(const http::request<http::string_body>& request) {
+RequestHead head_of(const http::request<http::string_body>& request) {
   const auto header = [&](boost::string_view name) {
     const auto found = request.find(name);
     return found == request.end() ? std::string() : text_of(found->value());
@@ -37,7 +37,7 @@ RequestHead knock_of(const http::request<http::string_body>& request) {
           header("Sec-Fetch-Site"),         header("Content-Type"),    hosts};
 }
 
-// The browser must not store the page, send its address to other sites, or show it in a frame of another site.
+// Adds headers so that the browser neither stores the page, nor sends its address to other sites, nor shows it in a frame of another site.
 Response response_of(PageReply reply, bool keeps_open) {
   Response response(static_cast<http::status>(reply.status), 11);
   response.set(http::field::content_type, reply.type);
@@ -55,7 +55,7 @@ Response response_of(PageReply reply, bool keeps_open) {
   return response;
 }
 
-// Data shared by all connections; it outlives them.
+// Data shared by the server and its connections. It exists until the last connection is closed.
 struct Shared {
   Shared(unsigned short port, LocalServer::Answer given) : gate(port, random_token()), answer(std::move(given)) {}
   Gate gate;
@@ -100,39 +100,39 @@ private:
     if (error && error.category() == http::make_error_code(http::error::bad_method).category() && error != http::error::end_of_stream &&
         error != http::error::partial_message)
       return send({400, "text/plain; charset=utf-8", "That is no request.\n"}, false);
-    if (error) return; // closed or timed out
+    if (error) return; // the connection was closed or timed out
     const http::request<http::string_body>& request = parser_->get();
-    const RequestHead knock = knock_of(request);
+    const RequestHead head = head_of(request);
     keeps_open_ = request.keep_alive();
     if (!refusal_.empty()) return send({403, "text/plain; charset=utf-8", "Refused: " + refusal_ + ".\n"}, false);
-    if (const std::string why = shared_->gate.refusal(knock); !why.empty())
+    if (const std::string why = shared_->gate.refusal(head); !why.empty())
       return send({403, "text/plain; charset=utf-8", "Refused: " + why + ".\n"}, false);
-    if (shared_->gate.takes_first(knock)) {
+    if (shared_->gate.is_first_use(head)) {
       PageReply reply{303, "text/plain; charset=utf-8", ""};
       reply.location = shared_->gate.folder();
       return send(std::move(reply), keeps_open_);
     }
     const std::string& folder = shared_->gate.folder();
-    if (!knock.target.starts_with(folder)) return send({403, "text/plain; charset=utf-8", "Refused: this address served once.\n"}, false);
-    hand_over(knock, request.body());
+    if (!head.target.starts_with(folder)) return send({403, "text/plain; charset=utf-8", "Refused: this address served once.\n"}, false);
+    hand_over(head, request.body());
   }
 
-  void hand_over(const RequestHead& knock, const std::string& body) {
-    const std::string rest = knock.target.substr(shared_->gate.folder().size());
+  void hand_over(const RequestHead& head, const std::string& body) {
+    const std::string rest = head.target.substr(shared_->gate.folder().size());
     const std::size_t mark = rest.find('?');
-    PageRequest asked{knock.method == "POST", rest.substr(0, mark), mark == std::string::npos ? "" : rest.substr(mark + 1), body};
+    PageRequest asked{head.method == "POST", rest.substr(0, mark), mark == std::string::npos ? "" : rest.substr(mark + 1), body};
     asked.is_gone = is_gone_;
     watch_for_close();
-    // The reply may come from another thread after this object has been destroyed.
+    // A worker thread may send the reply, so the connection must be kept alive until then.
     shared_->answer(std::move(asked), [self = shared_from_this(), executor = stream_.get_executor()](PageReply reply) {
       asio::post(executor, [self, reply = std::move(reply)]() mutable { self->send(std::move(reply), self->keeps_open_); });
     });
   }
 
-  // While a reply is computed, the socket becomes readable if the client closes it (or sends its next request early).
+  // Waits until the socket becomes readable during a computation: the client has closed it, or has sent the next request early.
   void watch_for_close() {
     stream_.socket().async_wait(tcp::socket::wait_read, [self = shared_from_this()](beast::error_code error) {
-      if (error) return; // cancelled by the reply
+      if (error) return; // the wait was cancelled because the reply is ready
       char next = 0;
       beast::error_code closed;
       self->stream_.socket().receive(asio::buffer(&next, 1), tcp::socket::message_peek, closed);
@@ -153,7 +153,7 @@ private:
     });
   }
 
-  std::string refusal_; ///< reason why this connection is refused; "": it is permitted
+  std::string refusal_; ///< reason for refusing this connection; "" if it is permitted
   std::shared_ptr<std::atomic<bool>> is_gone_ = std::make_shared<std::atomic<bool>>(false);
   beast::tcp_stream stream_;
   std::shared_ptr<Shared> shared_;
@@ -188,7 +188,7 @@ struct LocalServer::Implementation {
   void accept() {
     acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (error) return accept_later(); // no descriptor is free, so an immediate retry would fail again
+      if (error) return accept_later(); // retries later: no file descriptor is free
       if (shared->connections < k_most_connections) {
         beast::error_code ignored;
         socket.set_option(tcp::no_delay(true), ignored);

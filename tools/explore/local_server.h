@@ -11,12 +11,12 @@
 
 namespace steplap {
 
-/// Serves until stopped. Requests are answered by a function, at once or later.
+/// HTTP server that passes each permitted request to a function, which may reply at once or later.
 class LocalServer {
 public:
   static constexpr std::size_t k_longest_body = 1U << 18U;   ///< bytes of a request body
-  static constexpr std::size_t k_longest_header = 1U << 15U; ///< bytes of the header, including the address with its query
-  static constexpr int k_most_connections = 64;              ///< further connections are closed at once
+  static constexpr std::size_t k_longest_header = 1U << 15U; ///< size of the header, including the address with its query, bytes
+  static constexpr int k_most_connections = 64;              ///< largest number of connections; further ones are closed at once
   static constexpr int k_patience = 30;                      ///< timeout for a whole request, and between requests, s
   /// Interval between calls of `tick`, ms.
   static constexpr int k_tick = 100;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* k_established = "01"; // TCP_ESTABLISHED
 
-// Address of a socket as the kernel prints it: the bytes in network order, read as a number of this machine.
+// Returns the address of a socket in the kernel's notation: the bytes in network order, printed as a number in host order.
 std::string socket_text(unsigned short port) {
   char text[16];
   std::snprintf(text, sizeof text, "%08X:%04X", static_cast<unsigned>(htonl(INADDR_LOOPBACK)), static_cast<unsigned>(port));

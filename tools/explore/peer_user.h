@@ -1,4 +1,4 @@
-// The user to whom the other end of a local TCP connection belongs, from Linux's table of sockets /proc/net/tcp (proc(5)).
+// Finds the user at the other end of a local TCP connection in Linux's socket table /proc/net/tcp (proc(5)).
 #pragma once
 
 #include <optional>

@@ -10,11 +10,11 @@ namespace steplap {
 
 /// A request that the server's gate (gate.h) has permitted.
 struct PageRequest {
-  bool is_post = false; ///< true: POST; false: GET
+  bool is_post = false; ///< true for POST, false for GET
   std::string path;     ///< path after the token: "run"; "" for the page itself
   std::string query;    ///< text after the question mark, not decoded
-  std::string body;     ///< at most LocalServer::k_longest_body bytes
-  /// Becomes true when the client closes the connection: the reply is no longer read.
+  std::string body;     ///< content of the request, at most LocalServer::k_longest_body bytes
+  /// Becomes true when the client closes the connection, after which no reply is needed.
   std::shared_ptr<const std::atomic<bool>> is_gone = std::make_shared<std::atomic<bool>>(false);
 };
 
@@ -23,7 +23,7 @@ struct PageReply {
   int status = 200; ///< HTTP status
   std::string type = "text/plain; charset=utf-8";
   std::string body;
-  std::string policy{};   ///< Content-Security-Policy; "": nothing may be loaded or run
+  std::string policy{};   ///< value of the header Content-Security-Policy; "": nothing may be loaded or executed
   std::string location{}; ///< redirect target for status 303
 };
 

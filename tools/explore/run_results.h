@@ -1,4 +1,4 @@
-// Converts a run to the results that reading its folder would give, without writing files. Pages are made from these.
+// Converts a run to the results from which pages are made, without writing files.
 #pragma once
 
 #include "mbd/run/report.h"
@@ -6,10 +6,10 @@
 
 namespace steplap {
 
-/// Whether the text of the summary is created, which takes much of the time of a short run.
+/// Whether the summary's text is needed. Creating it takes much of the time of a short run.
 enum class SummaryText { made, left_out };
 
-/// Returns the same as read_results() for the folder written by Report::write(), except for the date of model.toml, which is unknown.
+/// Returns the same results as read_results() for the folder written by Report::write(), but without the date of model.toml.
 [[nodiscard]] Results results_of(const Report& report, SummaryText summary = SummaryText::made);
 
 } // namespace steplap

@@ -26,7 +26,7 @@ Node text_node(const std::string& key, const std::string& text) {
   return node;
 }
 
-// Returns the child with that key, which is added if there is none.
+// Returns the child with this key, and adds it if there is none.
 Node& child_of(Node& parent, const std::string& key, Node::Type type) {
   if (Node* found = parent.find(key)) return *found;
   Node& added = parent.children.emplace_back();
@@ -49,8 +49,9 @@ const Node* longest_entry(const Node& array, const std::string& rest) {
   return best;
 }
 
-// Copies the whole key to which the path leads from `whole` to `changes`. Returns false if it does not exist.
-bool take_over(const Node& whole, const std::string& path, Node& changes) {
+// Copies the top-level key that contains `path` from `whole` to `changes`, with its complete value. Returns false if the key does not
+// exist.
+bool copy_key(const Node& whole, const std::string& path, Node& changes) {
   const std::size_t point = path.find('.');
   const std::string top = path.substr(0, point), rest = point == std::string::npos ? "" : path.substr(point + 1);
   const Node* const source = whole.find(top);
@@ -82,12 +83,12 @@ bool take_over(const Node& whole, const std::string& path, Node& changes) {
 
 std::string path_in(const std::string& assignment) { return assignment.substr(0, assignment.find('=')); }
 
-// Returns true if the text, read as a file of that name, gives that model.
-bool makes(const std::string& text, const std::string& file, const Model& wanted) {
+// Returns true if reading `text` as the file `file` gives the model `wanted`.
+bool gives_model(const std::string& text, const std::string& file, const Model& wanted) {
   try {
     return changes_between(parse_given_model(text, file, program_catalogue()), wanted).empty();
   } catch (const ModelError&) {
-    return false; // it cannot be read
+    return false; // the text is not a valid model
   }
 }
 
@@ -104,11 +105,11 @@ std::string text_of_changes(const ExploredModel& model, const ExploredValues& va
   const fs::path file(model.path());
   changes.children.push_back(text_node("extends", file.filename().string()));
   bool is_whole = true;
-  for (const std::string& assignment : all) is_whole = take_over(whole, path_in(assignment), changes) && is_whole;
+  for (const std::string& assignment : all) is_whole = copy_key(whole, path_in(assignment), changes) && is_whole;
   const std::string text =
       "# Saved by steplap explore: what was changed of " + file.filename().string() + ".\n" + k_format_line + write_toml(changes);
   const Model wanted = read_given_model(model.path(), program_catalogue(), all);
-  if (is_whole && makes(text, (file.parent_path() / "changes.toml").string(), wanted)) return text;
+  if (is_whole && gives_model(text, (file.parent_path() / "changes.toml").string(), wanted)) return text;
   return "# Saved by steplap explore. What was changed lies in parts of " + file.filename().string() +
          ", where a file that extends it does not reach:\n# this one stands alone.\n" + alone;
 }

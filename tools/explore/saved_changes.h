@@ -7,13 +7,13 @@
 
 namespace steplap {
 
-/// Returns the text of a TOML file for the folder of the model's file. It `extends` that file and sets every changed key, including the
-/// overrides. The result is verified by reading it and comparing the models. Throws ModelError if the values are invalid, or if no such
-/// file can express them.
+/// Returns the text of a TOML file for the model's folder, which `extends` the model's file and sets the changed values, including the
+/// overrides. The text is verified by reading it and comparing the models. Throws ModelError if a value is invalid, or if such a file
+/// cannot express the changes.
 [[nodiscard]] std::string text_of_changes(const ExploredModel& model, const ExploredValues& values);
 
-/// Writes that text to the file `name` in the model's folder and returns its path. Throws ModelError as above, FileError if the name is
-/// invalid, the file exists, or the folder is not writable.
+/// Writes text_of_changes() to the file `name` in the model's folder and returns its path. Throws ModelError as text_of_changes(), and
+/// FileError if the name is invalid, the file exists, or the folder is not writable.
 std::string save_changes(const ExploredModel& model, const ExploredValues& values, const std::string& name);
 
 } // namespace steplap

@@ -13,9 +13,9 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_longest_list = 40; ///< numbers; samples of a record get no sliders
+constexpr std::size_t k_longest_list = 40; ///< longest list of numbers that gets sliders; longer lists are samples of a record
 
-// Fields whose name contains the first text belong to the group of the second.
+// Groups of sliders: a field whose name contains the first text belongs to the group named by the second.
 constexpr std::array<std::array<const char*, 2>, 13> k_groups{{{"friction", "friction"},
                                                                {"pressure", "pressure"},
                                                                {"peak", "peak"},
@@ -36,7 +36,7 @@ std::string group_of(const std::string& field) {
   return "";
 }
 
-// Chooses a range from a fifth of the value to twice the value; around zero the range of the field, or one unit.
+// Sets the slider's range to 0.2 to 2 times its value. At zero the field's own range is used, or ±1 unit if it has none.
 void choose_range(Slider& slider, double minimum, double maximum) {
   const double value = slider.value;
   slider.least = value > 0.0 ? 0.2 * value : value < 0.0 ? 2.0 * value : -1.0;
@@ -111,7 +111,7 @@ private:
     if (number < field.minimum || number > field.maximum || (field.is_minimum_excluded && number == field.minimum)) return;
     Slider slider{path, group_of(field.name), unit == "*" ? "" : unit, field.doc, number};
     slider.is_whole = field.type == FieldType::integer;
-    if (number == 0.0) slider.group.clear(); // values of zero are shown only in search results
+    if (number == 0.0) slider.group.clear(); // zero values have no group and appear in search results only
     choose_range(slider, field.minimum, field.maximum);
     if (field.is_minimum_excluded && slider.least <= field.minimum) slider.least += 0.01 * (slider.most - slider.least);
     sliders_.push_back(std::move(slider));

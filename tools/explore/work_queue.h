@@ -11,25 +11,25 @@
 
 namespace steplap {
 
-/// Task queue with one worker thread. A newer task makes an older one of the same owner stale; the older task can query this and end early.
+/// Task queue with one worker thread. A newer task can make older tasks of the same owner stale; a task can query this and end early.
 class WorkQueue {
 public:
-  /// Higher values are executed first.
+  /// Urgency of a task. Later enumerators are executed first.
   enum class Urgency { background, page, drag };
-  /// Tells a task whether its result is no longer needed or a more urgent task is waiting.
+  /// Passed to a task; returns true if its result is no longer needed or a more urgent task is waiting.
   using IsStale = std::function<bool()>;
   using Task = std::function<void(const IsStale&)>;
 
   static constexpr std::size_t k_most_waiting = 256; ///< maximum number of waiting tasks; further ones are rejected
 
   WorkQueue();
-  /// Discards waiting tasks, marks the running one as stale and waits for it.
+  /// Discards the waiting tasks, marks the running task as stale, and waits until it ends.
   ~WorkQueue();
   WorkQueue(const WorkQueue&) = delete;
   WorkQueue& operator=(const WorkQueue&) = delete;
 
-  /// Adds a task. A new task of urgency `drag` makes older tasks of the same owner and urgency stale, unless the owner is "". Stale tasks
-  /// are still run so that they can reply. Returns false and discards the task if too many are waiting. Tasks must not throw.
+  /// Adds a task. A task of urgency `drag` makes older tasks of the same owner and urgency stale, unless the owner is "". Stale tasks are
+  /// also run, so that they reply. Returns false and discards the task if k_most_waiting tasks are waiting. Tasks must not throw.
   [[nodiscard]] bool add(Urgency urgency, const std::string& owner, Task task);
 
 private:

@@ -1,5 +1,5 @@
-# Published measurements beside what steplap computes, for docs/evidence/experiments.md. Variables: figure, output, data (the folder of
-# tests/data/experiments), computed (what print_experiments prints of this experiment).
+# Draws published measurements and the results of steplap, for docs/evidence/experiments.md. Variables: figure, output, data (the folder
+# tests/data/experiments), computed (output of print_experiments for this experiment).
 set terminal svg size 640,360 font "sans,13" background "white"
 set output output
 set datafile separator ","

@@ -1,7 +1,7 @@
-// Data of the figures in docs/: figure_data DIR writes the files that limit_surface.gp and overlap.gp read.
+// Computes the data of figures in docs/: figure_data DIR writes the files that limit_surface.gp and overlap.gp read.
 //
-// The joint is that of the paper's front limb: two corners mitred at 45°, 1165 interfaces of 10 mm each,
-// μ = 0.25, p = 0.10 MPa. Wrenches about the limb's centre of gravity.
+// The joint is the front limb of the paper's transformer: two corners mitred at 45°, 1165 interfaces with an overlap of 10 mm, μ = 0.25, p
+// = 0.10 MPa. Wrenches refer to the limb's centre of gravity.
 #include "elements/step_lap/patch/overlap.h"
 #include "elements/step_lap/patch/required_pressure.h"
 #include "mbd/base/portable_math.h"
@@ -45,7 +45,7 @@ std::ofstream open(const std::string& path) {
   return file;
 }
 
-/// Of the joint of both corners (levels ±1), or of one.
+/// Returns the overlaps of the joint at the given levels: both corners, or one.
 Patch joint(std::initializer_list<double> levels) {
   Patch patch;
   for (const double level : levels) patch.add(overlap(sheets(corner_frame(k_mitre, 1.0, level), k_lap), {}), k_lap.count * k_traction);
@@ -55,8 +55,8 @@ Patch joint(std::initializer_list<double> levels) {
 
 // --- limit surface -----------------------------------------------------------------------------------------
 
-// The boundary in the plane of two components of the wrench, the third zero; kN, kN m. The ellipse has
-// the same capacities along both axes.
+// Writes the boundary of the limit surface in the plane of wrench components i and j, the third being zero, in kN and kN m. Also writes an
+// ellipse with the same capacities along both axes.
 void write_section(const std::string& path, const Patch& patch, int i, int j) {
   std::ofstream file = open(path);
   const double a = 1.0 / required_pressure(patch, Vec3::Unit(i)).u, b = 1.0 / required_pressure(patch, Vec3::Unit(j)).u;
@@ -69,8 +69,8 @@ void write_section(const std::string& path, const Patch& patch, int i, int j) {
   }
 }
 
-// Fx–Fy at fixed couples, a share of the largest each: along every direction the force at which u = 1, by
-// bisection (u grows along a ray that starts inside).
+// Writes Fx–Fy sections of the limit surface at fixed couples, given as fractions of the largest couple. For each direction the force with
+// u = 1 is found by bisection, because u increases along a ray from a point inside.
 void write_slices(const std::string& path, const Patch& patch) {
   std::ofstream file = open(path);
   const double most = 1.0 / required_pressure(patch, Vec3::Unit(2)).u;
@@ -91,7 +91,7 @@ void write_slices(const std::string& path, const Patch& patch) {
 
 // --- overlap ---------------------------------------------------------------------------------------------------
 
-// In mm along and across the mitre of the top corner.
+// Writes a ring in mm along and across the mitre of the top corner.
 void write_ring(std::ofstream& file, const CornerFrame& corner, const Ring& ring, const Pose& moved) {
   for (std::size_t i = 0; i <= ring.size(); ++i) {
     const Vec2 p = placed(ring[i % ring.size()], moved) - corner.origin;
@@ -100,7 +100,7 @@ void write_ring(std::ofstream& file, const CornerFrame& corner, const Ring& ring
   file << "\n\n";
 }
 
-// Three blocks: yoke sheet, limb sheet, overlap.
+// Writes three blocks: outlines of yoke sheet, limb sheet and overlap.
 void write_overlap(const std::string& path, const Pose& moved) {
   std::ofstream file = open(path);
   const CornerFrame corner = corner_frame(k_mitre, 1.0, 1.0);
@@ -110,8 +110,8 @@ void write_overlap(const std::string& path, const Pose& moved) {
   for (const Polygon& piece : overlap(s, moved)) write_ring(file, corner, piece.outer, {});
 }
 
-// Share of the area left at the top corner as the limb is drawn away across its mitre, mm: all overlaps
-// as 10 mm, and as they are in a book of five steps of 6.25 mm (10 mm in the mean).
+// Writes the remaining overlap area of the top corner, relative to the initial one, over the displacement of the limb across its mitre, mm:
+// for equal overlaps of 10 mm, and for a book of five steps of 6.25 mm (mean 10 mm).
 void write_shrinking(const std::string& path) {
   std::ofstream file = open(path);
   const CornerFrame corner = corner_frame(k_mitre, 1.0, 1.0);

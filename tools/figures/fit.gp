@@ -1,4 +1,4 @@
-# A record and what fits it, of models/studies/sliding_block_fit.toml. Variables: data, output.
+# Draws a measured record and the fit of models/studies/sliding_block_fit.toml. Variables: data, output.
 set terminal svg size 640,360 font "sans,13" background "white"
 set output output
 set datafile separator ","

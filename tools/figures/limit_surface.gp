@@ -1,4 +1,4 @@
-# The limit surface of the paper's front joint, in sections. Variables: data, output.
+# Draws sections of the limit surface of the paper's front joint. Variables: data, output.
 set terminal svg size 900,480 font "sans,13" background "white"
 set output output
 set multiplot layout 1,2

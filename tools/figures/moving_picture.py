@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Draws a transformer on its trailer in motion, as one SVG file that animates itself, from the results of a run.
+"""Draws the motion of a transformer on its trailer as one animated SVG file, from the results of a run.
 
 usage: moving_picture.py RESULT OUTPUT.svg
 
-RESULT is the folder of a run of models/layouts/single_phase_two_limb.toml. Bodies stand where trajectory.csv has them, in true
-scale and as seen from the trailer: only the wheels and the dashes of the road are added, and move as far as the trailer does.
-A limb is red while its step-lap joint slips. The file has no script: a page may show it as an image.
+RESULT is the folder of a run of models/layouts/single_phase_two_limb.toml. Bodies have the positions of trajectory.csv, in true scale and relative
+to the trailer. Wheels and dashes of the road are added and move with the trailer's travel. A limb is red while its step-lap joint slips. The file
+contains no script, so that a page can show it as an image.
 """
 import csv
 import json
@@ -13,12 +13,12 @@ import math
 import pathlib
 import sys
 
-SLOWER = 5          # the picture takes so many times as long as the run
-PAUSE = 1.2         # s: the last frame stands still
-FRAMES = 60         # of the run
-SCALE = 58          # pixels a metre
-WHEEL = 0.36        # m, radius; twelve axle lines
-ROAD = -1.3         # m: where the layouts have the road
+SLOWER = 5          # duration of the animation divided by that of the run
+PAUSE = 1.2         # time for which the last frame is shown, s
+FRAMES = 60         # number of frames
+SCALE = 58          # pixels per metre
+WHEEL = 0.36        # radius of the wheels on twelve axle lines, m
+ROAD = -1.3         # height of the road in the layouts, m
 WIDTH, HEIGHT = 740, 372
 MOVING = ["trailer", "tank", "active part", "rear limb", "front limb"]
 COLOURS = {"trailer": "trailer", "tank": "tank", "active part": "core", "front limb": "limb", "rear limb": "limb"}
@@ -37,7 +37,7 @@ def read_run(folder):
 
 
 def number(value):
-    """Formats a number to hundredths of a pixel, without trailing zeros."""
+    """Formats a number with two decimals, without trailing zeros."""
     text = f"{value:.2f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
@@ -62,7 +62,7 @@ def keyframes(name, shares, values):
 
 
 def move(pose, start, trailer, trailer_start):
-    """Returns the transform from the pose in which a body's outline is drawn (its first one) to a later pose, y downwards."""
+    """Returns the SVG transform from a body's initial pose, in which its outline is drawn, to a later pose (y downwards)."""
     x = SCALE * (pose[0] - trailer[0] - start[0] + trailer_start[0])
     y = -SCALE * (pose[1] - start[1])
     return f"transform:translate({number(x)}px,{number(y)}px) rotate({number(math.degrees(start[2] - pose[2]))}deg)"
@@ -137,7 +137,7 @@ def picture(folder):
 
 
 def slide_text(times, poses, slips):
-    """Describes the picture in one sentence."""
+    """Returns a sentence that describes the picture."""
     first = next(t for t, is_slipping in zip(times, slips["front limb"]) if is_slipping)
     relative = [b[0] - a[0] for a, b in zip(poses["active part"], poses["front limb"])]
     moved = 1000 * (relative[-1] - relative[0])

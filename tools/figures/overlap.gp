@@ -1,4 +1,4 @@
-# An overlap as the limb slides, and how much of it is left. Variables: data, output.
+# Draws an overlap while the limb slides, and its remaining area. Variables: data, output.
 set terminal svg size 900,860 font "sans,13" background "white"
 set output output
 set multiplot

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""A screenshot of `steplap explore` for the docs: photograph_explore.py STEPLAP MODEL IMAGE.
+"""Takes a screenshot of `steplap explore` for the docs: photograph_explore.py STEPLAP MODEL IMAGE.
 
-The pressure on the joints of the paper's transformer is lowered to a third, and a map of pressure and friction filled in.
+The pressure on the joints of the paper's transformer is reduced to a third, and the map of pressure and friction is complete.
 """
 import subprocess
 import sys

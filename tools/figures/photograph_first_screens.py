@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""First screens of twelve pages in light and dark: photograph_first_screens.py STEPLAP PAGES IMAGES.
+"""Takes screenshots of the first screens of twelve pages in light and dark: photograph_first_screens.py STEPLAP PAGES IMAGES.
 
-PAGES holds the pages of runs, of the study slip_probability and of the assessment of the folder arrival. IMAGES receives NAME.png and
+PAGES contains the pages of runs, of the study slip_probability and of the assessment in the folder arrival. IMAGES receives NAME.png and
 NAME_dark.png with 128 colours each.
 """
 import io

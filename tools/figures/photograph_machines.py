@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Pictures of models/machines for the gallery in the docs: photograph_machines.py PAGES IMAGES.
+"""Takes pictures of models/machines for the gallery in the docs: photograph_machines.py PAGES IMAGES.
 
-PAGES holds the reports <machine>.html, and tank_modes.html of steplap modes.
+PAGES contains the reports <machine>.html, and tank_modes.html from steplap modes.
 """
 import os
 import sys
@@ -12,7 +12,7 @@ from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 
-# Machine: time shown [s], are values written, bodies with trails
+# machine: time shown, s; true if values are shown; bodies with trails
 MACHINES = {
     "stacked_blocks": (0.75, True, []),
     "tank_with_lid": (0.9, True, []),

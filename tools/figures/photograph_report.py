@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Screenshots of pages for the docs: photograph_report.py PAGES IMAGES.
+"""Takes screenshots of pages for the docs: photograph_report.py PAGES IMAGES.
 
-PAGES holds paper.html, weak_clamping.html, the sheet arrival.html, and the pages of the studies slip_probability.html and tornado.html.
+PAGES contains paper.html, weak_clamping.html, the sheet arrival.html, and the pages of the studies slip_probability.html and tornado.html.
 """
 import base64
 import os
@@ -13,7 +13,7 @@ from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 
-# Image: page, width of the window, time shown [s] (None: the one that the page opens at), element of the page (None: its first screen)
+# image: page; window width; time shown, s (None: the page's own choice); element of the page (None: the first screen)
 IMAGES = {
     "report_verdict": ("weak_clamping.html", 1300, None, None),
     "report_machine": ("paper.html", 1280, 0.1218, "#scenes"),
@@ -21,7 +21,7 @@ IMAGES = {
     "assessment_page": ("arrival.html", 800, None, "#sheet"),
 }
 
-# Image: page of a study, width of the window, elements of the page from which and to whose end
+# image: page of a study; window width; first and last element of the page to be shown
 STUDIES = {
     "study_slip": ("slip_probability.html", 1100, "body", "#plane"),
     "study_tornado": ("tornado.html", 1100, "#indices", "#indices .chart:nth-child(4)"),

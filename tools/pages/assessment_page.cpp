@@ -26,13 +26,13 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t k_most_points = 60000; ///< total for the curves of all events
+constexpr std::size_t k_most_points = 60000; ///< largest number of points in the curves of all events together
 
 [[noreturn]] void damaged(const fs::path& file, const std::string& what) {
   throw FileError(file.string(), "'" + file.string() + "': " + what + "; it is not as steplap wrote it: run steplap assess again");
 }
 
-// Returns the position of a decision in ascending severity. "open" precedes "inspect", because an inspection can resolve it.
+// Returns the rank of a decision in ascending severity. "open" precedes "inspect", because an inspection can resolve it.
 int gravity_of(std::string_view outcome) {
   constexpr std::array<std::string_view, 4> k_outcomes{"energise", "open", "inspect", "return"};
   const auto* const found = std::find(k_outcomes.begin(), k_outcomes.end(), outcome);
@@ -58,7 +58,7 @@ void check_probability(const fs::path& file, const Json& object, const char* key
     damaged(file, where + ": " + key + " does not lie within its interval, or that not between 0 and 1");
 }
 
-// Keys that must be numbers wherever they occur, unless missing or null.
+// Keys whose values must be numbers, or null, in any object.
 const std::set<std::string_view> k_numbers{
     "acceleration", "allowed",      "angle_deg",     "at",    "ax",         "ay",     "bandwidth",       "error",
     "from",         "height",       "high",          "left",  "low",        "margin", "nominal",         "overlap_left",
@@ -73,7 +73,7 @@ const std::set<std::string_view> k_lists_of_objects{"cases",     "handovers", "r
 const std::set<std::string_view> k_lists_of_texts{"assumptions", "findings",  "hangs_on", "knows_not",
                                                   "remarks",     "taken_for", "tests",    "warnings"};
 
-// Checks the types, because the page would show a text in place of a number.
+// Throws FileError if a value has the wrong type, because the page would print a text in place of a number.
 void check_types(const fs::path& file, const Json& json, const std::string& where) {
   if (json.is_array())
     for (std::size_t i = 0; i < json.size(); ++i)
@@ -93,7 +93,7 @@ void check_types(const fs::path& file, const Json& json, const std::string& wher
   }
 }
 
-// Checks the data needed to begin a drawing.
+// Throws FileError if data required for a drawing is missing.
 void check_drawing(const fs::path& file, const Json& holder, const std::string& where) {
   if (!holder.contains("drawing") || holder["drawing"].is_null()) return;
   const Json& drawing = holder["drawing"];
@@ -131,7 +131,7 @@ std::vector<double> numbers_of(const Json& list) {
   return values;
 }
 
-// Rounds to five digits, more than a picture shows.
+// Rounds numbers to five digits, which is more than a picture shows.
 Json rounded(const Json& value) {
   if (!value.is_number()) return nullptr;
   char text[32];
@@ -139,7 +139,7 @@ Json rounded(const Json& value) {
   return std::strtod(text, nullptr);
 }
 
-// Times keep all digits, because their differences are small.
+// Reduces the curves of a figure to `stretches` intervals. Times keep all digits, because their differences are small.
 void thin_figure(Json& figure, std::size_t stretches) {
   if (!figure.is_object() || !figure.contains("times") || !figure["times"].is_array()) return;
   const std::size_t count = figure["times"].size();

@@ -31,7 +31,7 @@ struct Prefix {
   const char* text = "";
 };
 
-// Returns a prefix suitable for the largest value; none for units that a prefix would change.
+// Returns a unit prefix for the largest value of a panel; none for units that cannot take one.
 Prefix prefix_for(const Panel& panel) {
   static const std::set<std::string> prefixable{"m", "N", "N m", "Pa", "rad", "J", "m/s", "rad/s"};
   static constexpr std::array<Prefix, 6> prefixes{{{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1.0, ""}, {1e-3, "m"}, {1e-6, "µ"}}};

@@ -12,7 +12,7 @@ namespace steplap {
 struct Curve {
   std::string label;
   const std::vector<double>* times = nullptr;
-  const std::vector<double>* values = nullptr; ///< SI
+  const std::vector<double>* values = nullptr; ///< values of the curve, SI
   int colour = 0, dash = 0;
   double sign = 1.0;
 };
@@ -25,9 +25,9 @@ struct Panel {
 
 /// A figure with several panels.
 struct Figure {
-  std::vector<Panel> panels; ///< row by row
+  std::vector<Panel> panels; ///< panels in rows, from the top left
   int columns = 1;
-  int panel_width = 760, panel_height = 300; ///< pixels
+  int panel_width = 760, panel_height = 300; ///< size of a panel, pixels
 };
 
 /// Returns a script that draws `figure` into the image `file`; `ending` is svg, png or pdf. All characters of names are shown literally.

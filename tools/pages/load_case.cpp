@@ -12,7 +12,7 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_most_entries = 8; ///< of a list that is written out
+constexpr std::size_t k_most_entries = 8; ///< largest number of list entries that are written out
 
 std::string text_of(const Node& node);
 
@@ -38,12 +38,12 @@ std::string text_of(const Node& node) {
   return node.children.size() > k_most_entries ? std::to_string(node.children.size()) + " values" : "[" + joined(node) + "]";
 }
 
-// Adds the value at `key` of a table, if it is given.
+// Adds a row with the value of `key` in a table, if it is given.
 void add_value(OrderedJson& rows, const Node* table, const std::string& key, const std::string& words) {
   if (const Node* const value = table ? table->find(key) : nullptr) rows.push_back({words, text_of(*value)});
 }
 
-// Adds the entries of an array of tables that are chosen by name.
+// Adds a row for each entry of an array of tables for which `is_chosen(name)` is true.
 template <class Choice> void add_entries(OrderedJson& rows, const Node& model, const std::string& array, Choice is_chosen) {
   const Node* const entries = model.find(array);
   for (const Node& entry : entries ? entries->children : std::vector<Node>()) {
@@ -54,14 +54,14 @@ template <class Choice> void add_entries(OrderedJson& rows, const Node& model, c
   }
 }
 
-// Adds all texts of a node and its descendants, without names and kinds; references to signals are among them.
+// Collects all texts of a node and its descendants, except names and kinds. They include references to signals.
 void add_texts(const Node& node, std::set<std::string>& texts) {
   if (node.key == "name" || node.key == "kind") return;
   if (node.type == Node::Type::text) texts.insert(node.text());
   for (const Node& child : node.children) add_texts(child, texts);
 }
 
-// Returns the elements that are drawn by an arrow.
+// Returns the names of the elements that the drawing shows as arrows.
 std::set<std::string> arrows_in(const OrderedJson& drawing) {
   std::set<std::string> names;
   for (const OrderedJson& element : drawing.value("elements", OrderedJson::array()))

@@ -47,7 +47,7 @@ std::string modes_page(const LoadedModel& loaded, const Equilibrium& rest, const
   Json modes = Json::array();
   for (std::size_t i = 0; i < found.modes.size(); ++i) modes.push_back(mode_json(*loaded.system, found.modes[i], moves_most[i]));
   const Json data{{"program", std::string("steplap ") + k_version},
-                  {"runs", Json::array({still_run(loaded)})},
+                  {"runs", Json::array({run_without_histories(loaded)})},
                   {"modes",
                    {{"title", loaded.model.header.title},
                     {"rest", poses_json(*loaded.system, rest.state)},

@@ -9,7 +9,7 @@
 
 namespace steplap {
 
-/// Returns a self-contained HTML file. `moves_most` has a text for each mode that names the bodies with the largest motion.
+/// Returns a self-contained HTML file. `moves_most`: for each mode a text with the names of the bodies that move most.
 [[nodiscard]] std::string modes_page(const LoadedModel& loaded, const Equilibrium& rest, const VibrationModes& found,
                                      const std::vector<std::string>& moves_most, const std::vector<std::string>& remarks);
 

@@ -23,11 +23,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t k_most_events = 2000;       ///< shown on the page
-constexpr std::size_t k_most_model_text = 400000; ///< bytes
-constexpr std::size_t k_most_bodies = 2000;       ///< drawn
-constexpr std::size_t k_most_channels = 10000;    ///< of all runs; each adds its name and extremes, whatever the number of samples
-constexpr std::size_t k_least_stretches = 60;     ///< a curve with fewer intervals is of little use
+constexpr std::size_t k_most_events = 2000;       ///< largest number of events on the page
+constexpr std::size_t k_most_model_text = 400000; ///< longest text of a model, bytes
+constexpr std::size_t k_most_bodies = 2000;       ///< largest number of bodies drawn
+/// largest number of channels of all runs; each adds its name and extremes, whatever the number of samples
+constexpr std::size_t k_most_channels = 10000;
+constexpr std::size_t k_least_stretches = 60; ///< smallest number of intervals of a thinned curve; with fewer it is useless
 constexpr double k_base64 = 4.0 / 3.0;
 
 template <class T> std::string base64_of(const std::vector<T>& values) { return base64(std::as_bytes(std::span(values))); }
@@ -39,13 +40,14 @@ Json parsed(const Results& run, const std::string& text, const char* file) {
   return json;
 }
 
-// Distribution of the budget over the channels of all runs.
+// Channels to be included in the page, and the resolution of their curves.
 struct Plan {
   std::vector<std::vector<std::size_t>> kept; ///< per run: indices of channels, in the order of the file
-  std::size_t stretches = 0;                  ///< number of intervals; 0: all samples
+  std::size_t stretches = 0;                  ///< number of intervals per curve; 0: all samples are kept
 };
 
-// Returns the priority of a channel: 0 if the page requires it, then reactions and similar, then others.
+// Returns the priority of a channel: 0 if the page needs it, then reactions and similar, then others. Channels with large numbers are
+// omitted first.
 int rank_of(const ResultChannel& channel, const Json& drawing) {
   for (const Json& plot : drawing["plots"])
     for (const char* list : {"channels", "bounds"})
@@ -69,7 +71,7 @@ Plan plan_for(const std::vector<Results>& runs, const std::vector<Json>& drawing
   const double bytes = static_cast<double>(budget) / k_base64;
   const auto kept_bytes = [&](std::size_t count) { return static_cast<double>(count * rows) * sizeof(float); };
   if (kept_bytes(channels) <= bytes && channels <= k_most_channels) return plan;
-  // A thinned channel needs its own times: two floats per point, two points per interval.
+  // Bytes per interval of a thinned curve: two points with time and value.
   constexpr double k_stretch = 4.0 * sizeof(float);
   const auto thinned_most = static_cast<std::size_t>(bytes / (k_stretch * k_least_stretches));
   const std::size_t most =
@@ -108,7 +110,7 @@ Json channel_json(const ResultChannel& channel, const std::vector<double>& times
   return json;
 }
 
-// Returns the role of an event for the page, whose scripts do not interpret text.
+// Returns the code of an event kind for the page's scripts, which do not interpret texts.
 const char* role_of(EventKind kind) {
   if (is_slip(kind)) return "slip";
   switch (kind) {
@@ -123,7 +125,7 @@ const char* role_of(EventKind kind) {
   case EventKind::closes_gap: return "close";
   case EventKind::reaches_lower_stop:
   case EventKind::reaches_upper_stop: return "strike";
-  case EventKind::loses_normal_force: return "free"; // the contact of this friction has opened
+  case EventKind::loses_normal_force: return "free"; // the contact that presses this friction has opened
   default: return "";
   }
 }
@@ -137,7 +139,7 @@ Json events_json(const Results& run) {
   return json;
 }
 
-// Adds to numbers of summary.json with an error their text as shown on the screen. Numbers without an error are formatted by the page.
+// Adds to a number of summary.json the text with its error, as printed on the screen. The page formats numbers without an error itself.
 void add_text(Json& entry, const std::string& value, const std::string& error, const std::string& unit) {
   if (!entry.contains(error) || !entry.contains(value) || !entry[value].is_number()) return;
   const double known_to = entry[error].is_number() ? entry[error].get<double>() : std::numeric_limits<double>::quiet_NaN();
@@ -166,7 +168,7 @@ void add_texts(Json& summary) {
   for (const char* key : {"dissipated", "work"}) add_text(summary["accuracy"], key, std::string("error_") + key, "J");
 }
 
-// Omits extremes of channels that the page does not contain, because in large models they would dominate its size.
+// Removes the extremes of omitted channels, which would be most of the page for large models.
 void keep_extremes(Json& summary, const Results& run, const std::vector<std::size_t>& kept) {
   std::unordered_set<std::string> names;
   for (const std::size_t i : kept) names.insert(run.channels[i].name);
@@ -193,7 +195,7 @@ Json run_json(const Results& run, Json summary, Json drawing, const std::vector<
   Json channels = Json::array();
   for (const std::size_t i : kept) channels.push_back(channel_json(run.channels[i], run.times, stretches));
   const bool is_thinned = stretches > 0 && run.times.size() > 2 * stretches + 2;
-  // Thinned channels have their own times, so the page needs only the ends of the common ones.
+  // Thinned channels have their own times; of the common times only the ends are needed.
   const std::vector<double> ends{run.times.front(), run.times.back()};
   return {{"name", run.name},
           {"model_text", shortened(run.model)},
@@ -234,7 +236,7 @@ std::string report_data(const Results& run, OrderedJson summary, std::size_t bud
   return data_of({run}, std::move(summaries), budget);
 }
 
-OrderedJson still_run(const LoadedModel& loaded) {
+OrderedJson run_without_histories(const LoadedModel& loaded) {
   return {{"name", loaded.name},
           {"summary", {{"extremes", Json::object()}}},
           {"events", Json::array()},
@@ -242,7 +244,7 @@ OrderedJson still_run(const LoadedModel& loaded) {
           {"drawing", parse_ordered(drawing_json(loaded.model, *loaded.views))}};
 }
 
-OrderedJson still_run(Results run) {
+OrderedJson run_without_histories(Results run) {
   Json summary = parsed(run, run.summary, "summary.json"), drawing = parsed(run, run.drawing, "drawing.json");
   const Json worst = summary.value(Json::json_pointer("/overview/worst_instant"), Json());
   const double t = worst.is_number() ? worst.get<double>() : run.times.back();

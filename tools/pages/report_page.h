@@ -16,7 +16,7 @@ namespace steplap {
 
 /// Escapes a text for HTML.
 [[nodiscard]] std::string escaped_html(const std::string& text);
-/// Replaces "@NAME@" in the template by parts["NAME"]. Inserted text is not searched again.
+/// Replaces each "@NAME@" in the template by parts["NAME"]. "@NAME@" within inserted text is not replaced.
 [[nodiscard]] std::string filled_page(std::string_view page, const std::map<std::string, std::string, std::less<>>& parts);
 
 } // namespace steplap

@@ -26,7 +26,7 @@ std::string sheet_page(const std::string& title, const OrderedJson& data) {
 
 std::string cases_sheet(const std::vector<std::shared_ptr<const LoadedModel>>& models, const OrderedJson& document) {
   OrderedJson data{{"program", std::string("steplap ") + k_version}, {"runs", OrderedJson::array()}, {"load_cases", document}};
-  for (const auto& model : models) data["runs"].push_back(still_run(*model));
+  for (const auto& model : models) data["runs"].push_back(run_without_histories(*model));
   return sheet_page("cases: " + models.front()->name, data);
 }
 
@@ -34,7 +34,7 @@ std::string run_sheet(Results run) {
   const std::string title = "run: " + run.name;
   const double end = run.times.back();
   const std::string model = run.model;
-  OrderedJson still = still_run(std::move(run));
+  OrderedJson still = run_without_histories(std::move(run));
   still["run_end"] = end;
   still["load_case"] = load_case_json(model, still["drawing"]);
   return sheet_page(title, {{"program", std::string("steplap ") + k_version}, {"runs", OrderedJson::array({std::move(still)})}});

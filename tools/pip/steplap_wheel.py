@@ -1,8 +1,8 @@
-"""Builds the wheel of the module `steplap` by CMake, for pip (PEP 517). It needs nothing but Python itself and what CMake needs: tools/setup.
+"""Builds the wheel of the module `steplap` with CMake, for pip (PEP 517). Requires only Python and the packages for the build (tools/setup).
 
 Settings of pip, each as --config-settings NAME=VALUE:
-  build-dir   a build with STEPLAP_PYTHON_MODULE=ON that is taken as it is; without it the module is built in build/pip
-  jobs        compilers at a time (default: all processors)
+  build-dir   a finished build with STEPLAP_PYTHON_MODULE=ON; if not given, the module is built in build/pip
+  jobs        number of parallel compilations (default: all processors)
 """
 import base64
 import hashlib
@@ -18,7 +18,7 @@ import tempfile
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-DATE = (1980, 1, 1, 0, 0, 0)  # of all files: the same sources give the same bytes
+DATE = (1980, 1, 1, 0, 0, 0)  # date of all files, fixed so that equal sources give equal bytes
 
 
 def version():
@@ -29,7 +29,7 @@ def version():
 
 
 def system():
-    """The system whose shared libraries the module loads: "Debian GNU/Linux 12 (bookworm), x86_64"."""
+    """Returns the system whose shared libraries the module loads: "Debian GNU/Linux 12 (bookworm), x86_64"."""
     return f"{platform.freedesktop_os_release()['PRETTY_NAME']}, {platform.machine()}"
 
 

@@ -14,7 +14,7 @@ namespace steplap::python {
 
 namespace {
 
-/// One mode with the names of the bodies in its shape.
+/// A vibration mode with the names of the moving bodies.
 struct PyMode {
   VibrationMode mode;
   std::shared_ptr<const LoadedModel> loaded;
@@ -41,7 +41,7 @@ py::dict shape(const PyMode& m) {
   return parts;
 }
 
-/// A step-lap joint that keeps its model alive.
+/// A step-lap joint as a Python object; it keeps its model alive.
 struct PyJoint {
   std::shared_ptr<const LoadedModel> loaded;
   JointView view;

@@ -17,7 +17,7 @@
 
 namespace steplap::python {
 
-/// Class of Python for a C++ type, of the ordinary metaclass: classes have no static properties, which need another one.
+/// Defines a Python class for a C++ type, with the standard metaclass instead of pybind11's, which is needed for static properties only.
 template <class T> py::class_<T> native_class(py::module_& module, const char* name, const char* doc) {
   return py::class_<T>(module, name, doc, py::metaclass(reinterpret_cast<PyObject*>(&PyType_Type)));
 }
@@ -25,26 +25,26 @@ template <class T> py::class_<T> native_class(py::module_& module, const char* n
 /// A model object in Python.
 struct PyModel {
   std::shared_ptr<const LoadedModel> loaded;
-  std::shared_ptr<const std::string> source{}; ///< source text, if the model was made from a text and not from a file
+  std::shared_ptr<const std::string> source{}; ///< text of the model if it was not read from a file
 };
 
-/// Returns the model as given, for setting values in it.
+/// Returns the model before completion, so that values can be set in it.
 [[nodiscard]] Model given_model(const PyModel& model);
 
-/// Event at one instant, as Python shows it.
+/// An event as a Python object.
 struct PyEvent {
-  double t = 0.0; ///< s
+  double t = 0.0; ///< time, s
   std::string element, words;
 };
 
-/// Extremes of a channel with their errors, in the order of k_extremes; empty: unknown.
+/// Extremes of a channel with their errors, in the order of k_extremes. An empty entry is unknown.
 using PyExtremes = std::array<std::optional<double>, 8>;
-/// Names of the values in PyExtremes.
+/// Python names of the entries of PyExtremes.
 inline constexpr std::array<const char*, 8> k_extremes{"low", "t_low", "high", "t_high", "first", "final", "low_error", "high_error"};
 
-/// A run as Python shows it. NumPy arrays refer to `columns` and keep it alive.
+/// A run as a Python object. NumPy arrays refer to `columns` and keep it alive.
 struct PyRun {
-  std::string path, name; ///< of the model
+  std::string path, name; ///< path and name of the model
   std::string verdict, distrust;
   std::vector<std::string> caps;
   std::vector<CriterionResult> criteria;
@@ -52,16 +52,16 @@ struct PyRun {
   double energy_residual = 0.0;
   std::vector<PyEvent> events;
   std::optional<std::string> failure;
-  std::vector<std::pair<std::string, PyExtremes>> extremes; ///< by channel
+  std::vector<std::pair<std::string, PyExtremes>> extremes; ///< extremes by channel name
   std::shared_ptr<const Columns> columns;
-  std::function<std::string()> json;              ///< makes the text of summary.json
-  std::function<std::vector<ResultFile>()> files; ///< makes all files of the run; they refer to this run
+  std::function<std::string()> json;              ///< creates the text of summary.json
+  std::function<std::vector<ResultFile>()> files; ///< creates all files of the run; refers to this object
 };
 
-/// Returns "path=value" for a dictionary of values, or a list of such texts unchanged. Throws TypeError.
+/// Converts a dictionary to a list of "path=value". Returns a list of such texts unchanged. Throws TypeError.
 [[nodiscard]] std::vector<std::string> overrides_of(const py::object& given);
 
-/// Returns what `estimate` of Python means. Throws ValueError.
+/// Returns the value of the Python argument `estimate`. Throws ValueError for an unknown name.
 [[nodiscard]] Estimating estimating_named(const std::string& name);
 
 void add_analysis(py::module_& module);

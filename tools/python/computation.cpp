@@ -25,7 +25,7 @@ void stop_all() {
 } // namespace
 
 std::string Interruption::ask() {
-  constexpr double k_between = 0.05; // s; too short to be noticed by a user, and long compared with the cost of a check
+  constexpr double k_between = 0.05; // interval between checks, s: not noticed by a user, and long compared with the cost of a check
   if (g_is_exiting) return "the Python interpreter exits";
   const double now = seconds();
   if (raised_ || now - asked_ < k_between) return raised_ ? "interrupted" : "";
@@ -39,15 +39,15 @@ void Interruption::raise_if_any() {
   if (raised_) throw py::error_already_set(*raised_);
 }
 
-Unlocked::Counted::Counted() {
+Unlocked::CountedComputation::CountedComputation() {
   if (g_is_exiting) throw std::runtime_error("the Python interpreter exits");
   ++g_running;
 }
 
-Unlocked::Counted::~Counted() { --g_running; }
+Unlocked::CountedComputation::~CountedComputation() { --g_running; }
 
 void add_computation(py::module_&) {
-  // Computations of a parent process do not run in its forked child.
+  // A forked child process has none of its parent's computations.
   ::pthread_atfork(nullptr, nullptr, [] { g_running = 0; });
   py::module_::import("atexit").attr("register")(py::cpp_function(stop_all));
 }

@@ -1,4 +1,4 @@
-// Computations that leave the interpreter lock (GIL) to other Python threads, and that Ctrl-C and the end of the interpreter stop.
+// Computations that release Python's interpreter lock (GIL). Ctrl-C and the exit of the interpreter stop them.
 #pragma once
 
 #include "mbd/base/stop.h"
@@ -12,12 +12,12 @@ namespace steplap::python {
 
 namespace py = pybind11;
 
-/// Checks at most twenty times a second whether Ctrl-C was pressed in Python, or whether the interpreter exits. Called without the GIL.
+/// Checks at most 20 times per second whether Ctrl-C was pressed in Python, or whether the interpreter exits. Called without the GIL.
 class Interruption {
 public:
   /// Returns the reason to stop; "" lets the computation continue.
   [[nodiscard]] std::string ask();
-  /// Raises KeyboardInterrupt, or the exception of a signal handler, if one occurred. Must be called with the GIL held.
+  /// Raises KeyboardInterrupt, or the exception of another signal handler, if one was pending. Requires the GIL.
   void raise_if_any();
 
 private:
@@ -25,8 +25,8 @@ private:
   std::shared_ptr<py::error_already_set> raised_;
 };
 
-/// Releases the GIL while it exists. The interpreter does not exit meanwhile: it would end the thread in the middle of C++ code, which
-/// aborts the process.
+/// Releases the GIL during its lifetime and delays the exit of the interpreter, which would otherwise end this thread within C++ code and
+/// abort the process.
 class Unlocked {
 public:
   Unlocked() = default;
@@ -35,18 +35,18 @@ public:
   ~Unlocked() = default;
 
 private:
-  struct Counted {
-    Counted(); // throws std::runtime_error if the interpreter exits
-    Counted(const Counted&) = delete;
-    Counted& operator=(const Counted&) = delete;
-    ~Counted();
+  struct CountedComputation {
+    CountedComputation(); // throws std::runtime_error if the interpreter exits
+    CountedComputation(const CountedComputation&) = delete;
+    CountedComputation& operator=(const CountedComputation&) = delete;
+    ~CountedComputation();
   };
-  Counted counted_; // first: counted until the GIL is held again
+  CountedComputation counted_; // first member, so that the computation is counted until the GIL is acquired again
   py::gil_scoped_release released_;
 };
 
-/// Returns the result of `work(stop)`, computed without the GIL. `stop` is polled by all long loops of the library, and may be given to
-/// RunOptions. Raises KeyboardInterrupt if it was pressed meanwhile.
+/// Returns the result of `work(stop)`, computed without the GIL. All long loops of the library poll `stop`, which has the type of
+/// RunOptions::stop. Raises KeyboardInterrupt if Ctrl-C was pressed.
 template <class Work> auto computed(const Work& work) {
   Interruption interruption;
   const StopQuestion stop = [&interruption] { return interruption.ask(); };
@@ -64,7 +64,7 @@ template <class Work> auto computed(const Work& work) {
   }
 }
 
-/// Stops all computations when the interpreter exits, and waits for them.
+/// Registers a function that stops all computations and waits for them when the interpreter exits.
 void add_computation(py::module_& module);
 
 } // namespace steplap::python

@@ -7,7 +7,7 @@ namespace steplap::python {
 
 namespace {
 
-// Returns text that may hold bytes of a file name that are no UTF-8.
+// Converts text to a Python string. Bytes of file names that are not UTF-8 become surrogate escapes.
 py::object text_of(const std::string& text) {
   return py::reinterpret_steal<py::object>(PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<py::ssize_t>(text.size())));
 }

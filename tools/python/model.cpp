@@ -84,7 +84,7 @@ void add_model(py::module_& module) {
            "The same model with other values: {'element.rope.stiffness': '2 MN/m', 'simulation.end': 0.5}. Raises ModelError.")
       .def("equilibrium", equilibrium,
            "Where it rests: body -> (x, y, theta) of the centre of gravity, m and rad. Raises NumericalFailure if it does not.")
-      // A model is its text and its overrides: laid over that text again, they change nothing.
+      // A model is pickled as its text and overrides. Applying the overrides again to this text changes nothing.
       .def(py::pickle(
           [](const PyModel& m) { return py::make_tuple(m.source ? *m.source : m.loaded->text, m.loaded->path, m.loaded->overrides); },
           [](const py::tuple& state) {

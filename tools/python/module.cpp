@@ -6,7 +6,7 @@
 PYBIND11_MODULE(_steplap, module) {
   using namespace steplap::python;
   py::options options;
-  options.disable_function_signatures(); // sign_functions() writes others
+  options.disable_function_signatures(); // sign_functions() adds signatures that Python can parse
   module.doc() = "Planar multibody dynamics with exact friction: models, runs, verdicts.";
   module.attr("__version__") = steplap::k_version;
   add_computation(module);

@@ -1,4 +1,4 @@
-// Pickling of plain structs by their members.
+// Pickling of plain structs, member by member.
 #pragma once
 
 #include "mbd/base/diagnostics.h"
@@ -14,7 +14,7 @@ namespace steplap::python {
 
 namespace py = pybind11;
 
-/// How a member of type T is pickled; specialised for types that Python does not know.
+/// Conversion of a member of type T to a picklable object. Specialised for types that Python cannot convert.
 template <class T> struct MemberPickle {
   static py::object state(const T& member) {
     if constexpr (std::is_enum_v<T>) return py::int_(static_cast<int>(member));
@@ -34,8 +34,8 @@ template <> struct MemberPickle<Location> {
   }
 };
 
-/// Returns what py::class_::def takes to pickle the members of a default-constructible struct. Another version of steplap, whose struct may
-/// have other members, refuses the pickle by ValueError.
+/// Returns the argument of py::class_::def() that pickles the members of a default-constructible struct. A pickle of another version of
+/// steplap is refused with ValueError, because its struct may differ.
 template <class T, class... Members> auto pickling_of(Members T::*... members) {
   return py::pickle([members...](const T& object) { return py::make_tuple(k_version, MemberPickle<Members>::state(object.*members)...); },
                     [members...](const py::tuple& state) {

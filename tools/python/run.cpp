@@ -14,8 +14,7 @@
 
 namespace steplap::python {
 
-// Members of a run are pickled as the data that they hold or compute. A pickle contains the files themselves, because another version of
-// steplap might write others.
+// Pickles the members of a run as data. The contents of files are included, because another version of steplap could write different ones.
 template <> struct MemberPickle<std::shared_ptr<const Columns>> {
   static py::object state(const std::shared_ptr<const Columns>& columns) {
     return py::make_tuple(columns->names, columns->units, py::cast(columns->values));
@@ -127,14 +126,14 @@ PyRun run_of(const PyModel& model, std::optional<std::string> method, std::optio
   });
 }
 
-// The page is made from a folder of results, as by the command line.
+// Returns the page, which is created from the results as they would be read from a folder.
 std::string page_of(const PyRun& run) {
   namespace fs = std::filesystem;
   std::string folder = (fs::temp_directory_path() / "steplap-XXXXXX").string();
   if (!mkdtemp(folder.data())) throw FileError(folder, "no temporary folder can be made");
-  struct Remover {
+  struct FolderRemover {
     std::string folder;
-    ~Remover() {
+    ~FolderRemover() {
       std::error_code ignored;
       fs::remove_all(folder, ignored);
     }

@@ -22,7 +22,7 @@ namespace {
 
 constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
 
-// A number taken from each run: a channel and one of its values.
+// A number to be taken from each run: one value of a channel.
 struct Response {
   std::string channel;
   enum class ResponseValue { low, high, first, final } which = ResponseValue::high;
@@ -41,7 +41,7 @@ Response response_of(const std::pair<std::string, std::string>& given, const Sys
   throw py::value_error("of '" + channel + "': 'low', 'high', 'first' or 'final', not '" + which + "'");
 }
 
-// A value with its estimated error; NaN: unknown.
+// A value with its error estimate; the error is NaN if unknown.
 struct Answer {
   double value = k_none, error = k_none;
 };
@@ -59,7 +59,7 @@ Answer answer_of(const Report& report, const Response& response) {
   return {};
 }
 
-// Samples of one call, shared by its worker threads. work() runs samples that no other thread has taken, with the thread's own copy of the
+// Samples shared by several worker threads. Each thread calls work(), which runs samples that no other thread has taken, with a copy of the
 // model.
 struct SampleQueue {
   const Model& given;
@@ -69,7 +69,7 @@ struct SampleQueue {
   const double* values;
   std::size_t count;
   Estimating estimating;
-  double* results; ///< a row a sample: values, then their errors
+  double* results; ///< one row per sample: values, then their errors
   std::vector<std::string>& verdicts;
   std::vector<std::string>& troubles;
   std::atomic<std::size_t> next{0}, done{0};

@@ -7,7 +7,7 @@ namespace steplap::python {
 
 namespace {
 
-// Returns "(self, end=None)". Python takes "$self" for an argument that is bound already.
+// Returns a signature such as "($self, end=None)". Python omits "$self" for bound methods.
 std::string signature_of(const py::detail::function_record& function) {
   std::string text;
   if (function.is_method && function.args.empty()) text = "self";
@@ -26,7 +26,7 @@ void sign(const py::handle& object) {
   if (!py::detail::is_function_record_capsule(capsule)) return;
   auto* const record = capsule.get_pointer<py::detail::function_record>();
   const std::string text = record->name + signature_of(*record) + "\n--\n\n" + (record->doc ? record->doc : "");
-  record->def->ml_doc = ::strdup(text.c_str()); // lives as long as the module
+  record->def->ml_doc = ::strdup(text.c_str()); // never freed, because the function exists as long as the module
 }
 
 } // namespace

@@ -7,8 +7,8 @@ namespace steplap::python {
 
 namespace py = pybind11;
 
-/// Puts a signature in front of the docstring of each function of the module and of its classes, in the form that Python reads
-/// (`__text_signature__`). The functions must have been defined without pybind11's own signatures, which Python cannot read.
+/// Adds a signature to the docstring of each function and method of the module, in the form that Python parses (`__text_signature__`).
+/// Precondition: pybind11's own signatures, which Python cannot parse, are disabled.
 void sign_functions(const py::module_& module);
 
 } // namespace steplap::python

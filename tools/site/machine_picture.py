@@ -1,4 +1,4 @@
-"""Draws a machine as SVG, from the drawing.json of a run: for the cookbook and for the reference of elements."""
+"""Draws a machine as SVG from the drawing.json of a run, for the cookbook and the reference of elements."""
 import json
 import math
 import pathlib
@@ -33,7 +33,7 @@ def sign_of(value):
 
 
 def loads_of(model):
-    """Returns the direction of each load; a couple has none."""
+    """Returns the direction of each load by its name; None for a couple."""
     peaks = {signal["name"]: signal.get("peak", 1) for signal in model.get("signal", [])}
     found = {}
     for element in model["element"]:

@@ -23,8 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double k_usual_budget = 5.0;      // CPU time, s
-constexpr double k_steps_of_a_run = 8000.0; // if the model gives no step: middle of the ladder of settings
+constexpr double k_usual_budget = 5.0;      // default budget of CPU time, s
+constexpr double k_steps_of_a_run = 8000.0; // number of steps assumed for a run if the model gives no step
 
 struct AccuracyCommand {
   std::vector<std::string> models, overrides, integrators, settings, references, wanted;

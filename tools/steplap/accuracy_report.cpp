@@ -67,10 +67,10 @@ void print_answer(std::ostream& out, const AccuracyStudy& study, const std::vect
   }
 }
 
-constexpr std::size_t k_most_rows = 12; // on the screen
+constexpr std::size_t k_most_rows = 12; // largest number of rows printed on the screen
 
-// Returns the entries for the screen, in the order of the study. Those that nothing beats in both time and error come first, then the
-// cheapest of the others.
+// Returns the entries for the screen, in the order of the study. Pareto-optimal entries (no other is both faster and more accurate) are
+// chosen first, then the cheapest of the others.
 std::vector<const AccuracyEntry*> entries_to_show(const AccuracyStudy& study, bool are_all) {
   std::vector<const AccuracyEntry*> entries;
   for (const AccuracyEntry& e : study.entries)
@@ -80,7 +80,7 @@ std::vector<const AccuracyEntry*> entries_to_show(const AccuracyStudy& study, bo
     return a->is_pareto != b->is_pareto ? a->is_pareto : a->cpu_seconds < b->cpu_seconds;
   });
   entries.resize(k_most_rows);
-  std::sort(entries.begin(), entries.end()); // they are elements of one vector
+  std::sort(entries.begin(), entries.end()); // restores the order of the study: the pointers refer to one vector
   return entries;
 }
 
@@ -89,10 +89,10 @@ std::vector<const AccuracyEntry*> entries_to_show(const AccuracyStudy& study, bo
 constexpr double k_width = 640.0, k_height = 440.0, k_left = 70.0, k_right = 120.0, k_top = 40.0, k_bottom = 55.0;
 constexpr const char* k_colours[] = {"#1b6ca8", "#c8553d", "#3a7d44", "#7b4fa3", "#b8860b", "#4a4a4a"};
 
-// A logarithmic axis over whole decades.
+// A logarithmic axis that begins and ends at whole decades.
 struct Axis {
-  double low = INFINITY, high = -INFINITY; ///< decades
-  double from = 0.0, to = 1.0;             ///< position on the page
+  double low = INFINITY, high = -INFINITY; ///< smallest and largest decade, log10 of the value
+  double from = 0.0, to = 1.0;             ///< positions of both ends on the page
   void take(double value) {
     if (!(value > 0.0)) return;
     low = std::min(low, std::floor(portable::log10(value)));
@@ -150,22 +150,22 @@ std::string grid(const Axis& x, const Axis& y) {
   return svg;
 }
 
-struct Drawn {
+struct DrawnEntry {
   const AccuracyEntry* entry;
   double error;
 };
 
-std::vector<Drawn> drawn(const AccuracyStudy& study) {
-  std::vector<Drawn> list;
+std::vector<DrawnEntry> drawn(const AccuracyStudy& study) {
+  std::vector<DrawnEntry> list;
   for (const AccuracyEntry& entry : study.entries)
     if (entry.failure.empty() && study.error_of(entry) > 0.0) list.push_back({&entry, study.error_of(entry)});
   return list;
 }
 
-std::string curve(const std::vector<Drawn>& points, const std::string& integrator, const std::string& colour, const Axis& x,
+std::string curve(const std::vector<DrawnEntry>& points, const std::string& integrator, const std::string& colour, const Axis& x,
                   const Axis& y) {
   std::string path, dots;
-  for (const Drawn& p : points) {
+  for (const DrawnEntry& p : points) {
     if (p.entry->setting.integrator != integrator) continue;
     const std::string px = fixed(x.at(p.error)), py = fixed(y.at(1e3 * p.entry->cpu_seconds));
     path += (path.empty() ? "M" : "L") + px + " " + py;
@@ -175,9 +175,9 @@ std::string curve(const std::vector<Drawn>& points, const std::string& integrato
   return "<path d=\"" + path + "\" fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"1.5\"/>\n" + dots;
 }
 
-std::vector<std::string> integrators_of(const std::vector<Drawn>& points) {
+std::vector<std::string> integrators_of(const std::vector<DrawnEntry>& points) {
   std::vector<std::string> names;
-  for (const Drawn& p : points)
+  for (const DrawnEntry& p : points)
     if (std::find(names.begin(), names.end(), p.entry->setting.integrator) == names.end()) names.push_back(p.entry->setting.integrator);
   return names;
 }
@@ -186,7 +186,7 @@ std::vector<std::string> integrators_of(const std::vector<Drawn>& points) {
 
 namespace {
 
-// Results depend on the computer, because a budget permits more settings on a fast one.
+// Prints the computing time allowed for the study and the settings that were not tried because of it. A fast computer tries more of them.
 void print_budget(std::ostream& out, const AccuracyStudy& study) {
   std::string left_out;
   for (const AccuracyEntry& e : study.entries)
@@ -253,13 +253,13 @@ std::string accuracy_csv(const AccuracyStudy& study) {
 }
 
 std::string work_precision_svg(const AccuracyStudy& study, const std::string& title) {
-  const std::vector<Drawn> points = drawn(study);
+  const std::vector<DrawnEntry> points = drawn(study);
   Axis x, y;
   x.from = k_left;
   x.to = k_width - k_right;
   y.from = k_height - k_bottom;
   y.to = k_top;
-  for (const Drawn& p : points) {
+  for (const DrawnEntry& p : points) {
     x.take(p.error);
     y.take(1e3 * p.entry->cpu_seconds);
   }

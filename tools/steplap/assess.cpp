@@ -28,7 +28,7 @@ ExitCode assess_here(const AssessOptions& options, Console& console) {
 
 } // namespace
 
-bool asks_for_assessment(const std::vector<std::string>& arguments) {
+bool is_record_assessment(const std::vector<std::string>& arguments) {
   const auto command = std::find_if(arguments.begin(), arguments.end(), [](const std::string& word) { return !word.starts_with('-'); });
   if (command == arguments.end() || *command != "assess") return false;
   return std::none_of(arguments.begin(), arguments.end(), [](const std::string& word) {

@@ -1,5 +1,5 @@
-// Command `steplap assess`: from recorders' files and models to a decision. This file parses the command line. The work is done by the
-// study program (tools/study/program/assess.h), which links the required libraries, or, with --static, here.
+// Command `steplap assess`: makes a decision from recorder files and models. This file parses the command line. The study program
+// (tools/study/program/assess.h), which links the required libraries, does the work; `--static` runs in this program.
 #pragma once
 
 #include "tools/steplap/record_options.h"
@@ -20,7 +20,7 @@ struct AssessOptions : ReadingOptions {
 
 /// Returns the command; `work` executes it.
 [[nodiscard]] Command assess_command(const std::function<ExitCode(const AssessOptions& options, Console& console)>& work);
-/// Returns true if these arguments must be passed to the study program.
-[[nodiscard]] bool asks_for_assessment(const std::vector<std::string>& arguments);
+/// Returns true if these arguments request an assessment of recorder files, which the study program executes.
+[[nodiscard]] bool is_record_assessment(const std::vector<std::string>& arguments);
 
 } // namespace steplap

@@ -14,22 +14,22 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_step = 1e-3;     // s; contacts of heavy machines vibrate below 100 Hz
-constexpr double k_samples = 200e3; // of a long run, at most
+constexpr double k_step = 1e-3;     // output step, s: 10 samples per period at 100 Hz; contacts of heavy machines vibrate more slowly
+constexpr double k_samples = 200e3; // largest number of output samples; long runs get a larger step
 
-/// A friction in one case of one model.
+/// Friction of one shared element during one load case in one plane.
 struct CaseFriction {
   FrictionPlane plane;
   SampledFriction trace;
   std::optional<double> error; ///< sum of the estimated errors of friction and capacity, N; NaN: unknown; empty: not estimated
 };
 
-/// One of the models.
+/// One of the two models, which shows the machine in one plane, with its load cases and their results.
 struct Plane {
   std::shared_ptr<const LoadedModel> loaded;
   FrictionNames frictions;
   std::vector<LoadCase> cases;
-  std::vector<std::map<std::string, CaseFriction>> traced; ///< by the name of the friction, for each case
+  std::vector<std::map<std::string, CaseFriction>> traced; ///< friction histories: one map per load case, with the element's name as key
 
   explicit Plane(std::shared_ptr<const LoadedModel> model)
       : loaded(std::move(model)), frictions(friction_names(loaded->model)), cases(load_cases_of(loaded->model)), traced(cases.size()) {}
@@ -82,10 +82,11 @@ void check_planes(const Planes& planes) {
   if (!problems.empty()) throw ModelError(std::move(problems));
 }
 
-// Gravity at rest: what `pull` adds is a load.
+// Returns gravity at rest, m/s²: the load case's `pull` (m/s²) is included in the model's gravity and counts as a load.
 Vec2 gravity_of(const Model& model, const LoadCase& one) { return model.header.gravity - one.pull.value_or(Vec2::Zero()); }
 
-// Errors of friction and capacity of these elements at both ends of their ranges together, N; NaN: unknown; empty: not estimated.
+// Returns the summed errors of friction and capacity of these elements, at both extremes of each channel, N. NaN: unknown; empty: not
+// estimated.
 std::optional<double> error_of(const Report& report, const std::vector<std::string>& elements) {
   if (!report.estimate.errors) return {};
   double sum = 0.0;
@@ -123,7 +124,8 @@ LoadCaseResults run_plane(Plane& plane, const std::string& path, const std::vect
   return run_load_cases(path, overrides, catalogue, options, reading);
 }
 
-// The use of a friction by both planes as a limit. `doubt`: why the friction may not hold, one sentence; empty if it holds.
+// Utilisation of a shared friction by the loads of both planes, as a limit of the load case. `doubt` is one sentence that says why this
+// friction may slip; empty if it holds.
 struct BothPlanes {
   CaseLimit limit;
   std::string doubt;

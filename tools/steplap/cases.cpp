@@ -70,8 +70,8 @@ ExitCode cases(const CasesOptions& options, Console& console) {
   if (JsonScreen* const screen = json_screen(console.out)) {
     screen->begin(About{results.models.front()->path});
     screen->put("load_cases", document);
-  } else if (files.has_words()) print_load_cases(console.out, results);
-  if (options.sheet && files.has_words()) console.out << "\nWritten to " << *options.sheet << "\n";
+  } else if (files.may_print()) print_load_cases(console.out, results);
+  if (options.sheet && files.may_print()) console.out << "\nWritten to " << *options.sheet << "\n";
   return code_of(results, options.is_hold_required);
 }
 

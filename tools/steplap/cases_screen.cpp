@@ -15,8 +15,8 @@ namespace {
 
 using Align = TextTable::Align;
 
-constexpr std::size_t k_columns = 80, k_name = 25, k_quantity = 12; // characters
-constexpr std::size_t k_cases_in_row = 6;                           // of the matrix; more cases are printed in further tables
+constexpr std::size_t k_columns = 80, k_name = 25, k_quantity = 12; // widths of screen, names and quantities, in characters
+constexpr std::size_t k_cases_in_row = 6;                           // columns of the matrix; more cases are printed in further tables
 
 std::string name_text(const std::string& name) { return cut(shown(name), k_name); }
 
@@ -48,7 +48,7 @@ void print_cases(std::ostream& out, const std::vector<CaseResult>& cases) {
 
 // Cuts the names in the first column so that the table fits on the screen. Numbers keep their digits and units.
 void cut_names(std::vector<TextTable::Row>& rows) {
-  std::size_t others = 2; // the indent
+  std::size_t others = 2; // starts with the indent of the table
   for (std::size_t i = 1; i < rows.front().size(); ++i) {
     std::size_t widest = 0;
     for (const TextTable::Row& row : rows) widest = std::max(widest, width_of(row[i].text));

@@ -25,7 +25,7 @@ struct ChannelsOptions {
   bool is_overwriting = false;
 };
 
-struct Listed {
+struct ListedChannel {
   const Channel* channel;
   const char* made; ///< "written", "not written" or "on request"
 };
@@ -37,12 +37,12 @@ std::unique_ptr<System> with_all_channels(const Model& model) {
   return compile(all);
 }
 
-std::vector<Listed> list_channels(const LoadedModel& loaded, const System& all, const std::vector<std::string>& patterns) {
+std::vector<ListedChannel> list_channels(const LoadedModel& loaded, const System& all, const std::vector<std::string>& patterns) {
   const Trajectory trajectory(*loaded.system, loaded.model.output.channels);
   std::unordered_set<std::string> made, written;
   for (const Channel& channel : loaded.system->channels) made.insert(channel.name);
   for (const Channel* channel : trajectory.channels()) written.insert(channel->name);
-  std::vector<Listed> list;
+  std::vector<ListedChannel> list;
   for (const Channel& channel : all.channels) {
     const auto matches = [&](const std::string& pattern) { return matches_pattern(channel.name, pattern); };
     if (!patterns.empty() && std::none_of(patterns.begin(), patterns.end(), matches)) continue;
@@ -52,9 +52,9 @@ std::vector<Listed> list_channels(const LoadedModel& loaded, const System& all, 
   return list;
 }
 
-std::string table_csv(const std::vector<Listed>& list) {
+std::string table_csv(const std::vector<ListedChannel>& list) {
   std::string text = "channel,unit,made,sign,meaning,codes\n";
-  for (const Listed& each : list) {
+  for (const ListedChannel& each : list) {
     const Channel& c = *each.channel;
     const std::string made = each.made;
     for (const std::string* cell : {&c.name, &c.unit, &made, &c.sign, &c.doc}) text += csv_field(*cell) + ",";
@@ -63,11 +63,11 @@ std::string table_csv(const std::vector<Listed>& list) {
   return text;
 }
 
-void print_channels(std::ostream& out, const LoadedModel& loaded, const std::vector<Listed>& list) {
+void print_channels(std::ostream& out, const LoadedModel& loaded, const std::vector<ListedChannel>& list) {
   TextTable table({Align::left, Align::left, Align::left, Align::left, Align::left});
   table.set_head("channels", {"channel", "unit", "made", "sign", "meaning"});
   bool is_any_on_request = false;
-  for (const Listed& each : list) {
+  for (const ListedChannel& each : list) {
     const Channel& c = *each.channel;
     is_any_on_request |= std::string_view(each.made) == "on request";
     table.add_row({c.name, c.unit.empty() ? "-" : c.unit, each.made, c.sign, c.codes.empty() ? c.doc : c.doc + ": " + c.codes});
@@ -81,14 +81,14 @@ ExitCode channels(const ChannelsOptions& options, Console& console) {
   const OutputFiles files(console, {{"-o", options.output}}, options.is_overwriting);
   const auto loaded = load_model(options.model, options.overrides);
   const std::unique_ptr<System> all = with_all_channels(loaded->model);
-  const std::vector<Listed> list = list_channels(*loaded, *all, options.patterns);
+  const std::vector<ListedChannel> list = list_channels(*loaded, *all, options.patterns);
   if (list.empty()) {
     std::vector<std::string> known;
     for (const Channel& channel : all->channels) known.push_back(channel.name);
     throw UsageError("no channel matches '" + options.patterns.front() + "'" + did_you_mean(options.patterns.front(), known));
   }
   files.write(options.output, table_csv(list));
-  if (files.has_words()) print_channels(console.out, *loaded, list);
+  if (files.may_print()) print_channels(console.out, *loaded, list);
   return ExitCode::done;
 }
 

@@ -45,7 +45,7 @@ struct CheckOptions {
   std::optional<std::string> parameter; ///< parameter whose uses are listed
 };
 
-constexpr double k_usual_cpu_limit = 60.0; // for all runs together, s
+constexpr double k_usual_cpu_limit = 60.0; // CPU time for the runs of --cross together, s
 
 double cpu_limit_of(const CheckOptions& options) {
   if (!options.cpu_limit) return k_usual_cpu_limit;
@@ -75,7 +75,7 @@ std::string bodies_text(const Model& model) {
   for (const Body& body : model.bodies) body.fixed ? static_cast<void>(++fixed) : static_cast<void>(mass += body.mass);
   std::string text = std::to_string(model.bodies.size());
   if (fixed > 0) text += ", " + std::to_string(fixed) + " of them fixed";
-  char rounded[32]; // masses of sheets are not round numbers
+  char rounded[32]; // eight digits: the computed mass of sheets has more
   std::snprintf(rounded, sizeof rounded, "%.8g", mass);
   return text + "; " + rounded + " kg move";
 }
@@ -125,7 +125,8 @@ void print_assembly(std::ostream& out, const LoadedModel& loaded) {
   if (moves.size() > k_shown_moves) out << "  and " << counted(moves.size() - k_shown_moves, "body", "bodies") << " that moved less\n";
 }
 
-// Returns the initial state, or the given one if no equilibrium exists; the run reports this error.
+// Returns the initial state: at rest if the model asks for equilibrium, otherwise as assembled. If no equilibrium exists, returns the
+// assembled state; the run reports the error.
 State start_to_show(const LoadedModel& loaded, std::string& title) {
   const bool is_at_rest = loaded.model.simulation.initial == "equilibrium";
   title = is_at_rest ? "contact at rest" : "contact at the start";
@@ -160,7 +161,7 @@ void print_contacts(std::ostream& out, const LoadedModel& loaded) {
     out << "  and " << counted(contacts.size() - k_shown_contacts, "contact", "contacts") << " more\n";
 }
 
-// Formats with six digits, because values of formulas are not rounded.
+// Formats a value with its unit. Six digits suffice to recognise it; values of formulas have all.
 std::string with_unit(double value, const std::string& unit) {
   char rounded[32];
   std::snprintf(rounded, sizeof rounded, "%.6g", value);
@@ -265,7 +266,7 @@ void print_model(std::ostream& out, const LoadedModel& loaded) {
     out << (finding.level == FindingLevel::warning ? "  warning: " : "  note: ") << text_with_place(finding) << "\n";
 }
 
-// Prints a note once for all models.
+// Prints one note that lists the model files without `format = 1`.
 void note_missing_format(std::ostream& out, const std::vector<std::shared_ptr<const LoadedModel>>& models) {
   std::vector<std::string> files;
   for (const auto& loaded : models)
@@ -292,8 +293,8 @@ ExitCode update_files(const CheckOptions& options, Console& console) {
     console.out << "\n";
     for (const std::string& file : loaded->model.files_without_format)
       if (file != loaded->path) console.out << "  note: " << file << ", which it uses, does not say `format = 1`: update it as well\n";
-    if (update.left_keys > 0)
-      console.out << "  note: " << counted(update.left_keys, "key", "keys")
+    if (update.missing_keys > 0)
+      console.out << "  note: " << counted(update.missing_keys, "key", "keys")
                   << " with an earlier name in other files: update these as well\n";
   }
   return ExitCode::done;

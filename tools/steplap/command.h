@@ -48,19 +48,19 @@ struct Option {
 
 /// An option that no longer exists.
 struct RetiredOption {
-  std::string name;   ///< "--threads"
+  std::string name;   ///< former option, "--threads"
   std::string advice; ///< replacement, shown to the user
 };
 
 /// A sub-command.
 struct Command {
   std::string name;
-  std::string summary;  ///< one line
+  std::string summary;  ///< description in the list of commands, one line
   std::string examples; ///< shown after the options; lines end with \n
   std::vector<Option> options;
   std::function<ExitCode(Console& console)> run;
   std::vector<RetiredOption> retired{};
-  bool prints_tables = false; ///< true if it has --json (json_screen.h)
+  bool prints_tables = false; ///< true if the command has the option --json (json_screen.h)
 };
 
 } // namespace steplap

@@ -92,7 +92,7 @@ ExitCode report_exception(Console& console) {
   } catch (const FileError& error) {
     log_error(error.what());
     return ExitCode::usage;
-  } catch (const std::filesystem::filesystem_error& error) { // the working folder or that for temporary files is gone
+  } catch (const std::filesystem::filesystem_error& error) { // for example: the current folder no longer exists
     log_error("cannot use '" + error.path1().string() + "': " + error.code().message());
     return ExitCode::usage;
   } catch (const ModelError& error) {
@@ -136,7 +136,8 @@ bool is_given(const std::vector<std::string>& arguments, const std::string& word
   return std::find(arguments.begin(), arguments.end(), word) != arguments.end();
 }
 
-// Returns " (did you mean '--report'?)" for the first argument that resembles an option but is none; "" if there is no such argument.
+// Returns a hint such as " (did you mean '--report'?)" for the first argument that is similar to an option of the command; "" if there is
+// none.
 std::string meant_option(const std::vector<std::string>& arguments, const CLI::App& app) {
   std::vector<std::string> known;
   for (const CLI::Option* option : app.get_options())
@@ -262,7 +263,7 @@ int run_program(const Program& program, const std::vector<std::string>& given, s
     app.parse(reversed);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) return static_cast<int>(report_usage(error, arguments, program, app, err));
-    app.exit(error, out, err); // help or version
+    app.exit(error, out, err); // prints help or version
     return static_cast<int>(ExitCode::done);
   }
   if (is_help_in_json) {

@@ -20,7 +20,7 @@ int code_of_output(std::ostream& out, std::ostream& err, int code);
 struct Program {
   std::string name, doc;
   std::vector<Command> commands;
-  std::string exit_codes{}; ///< text about exit codes in the help; "": that of `steplap`
+  std::string exit_codes{}; ///< description of the exit codes in the help; "": that of `steplap`
 };
 
 /// Returns true if the program has a command of that name.

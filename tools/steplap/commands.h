@@ -1,4 +1,4 @@
-// List of all sub-commands. Each is defined in the source of its name; a new one is declared here and entered in commands.cpp.
+// List of all sub-commands. Each is defined in the source file of its name. A new command is declared here and listed in commands.cpp.
 #pragma once
 
 #include "tools/steplap/command.h"

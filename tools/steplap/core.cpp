@@ -115,7 +115,7 @@ void print_compliance(std::ostream& out, const Core& core, const CoreGeometry& g
   out << "\n";
 }
 
-// Lists the packets whose pressure follows the acceleration across the stack, for the first corner of each.
+// Prints the increase in pressure per acceleration across the stack, smallest and largest over the laps of the corner.
 void print_transverse(std::ostream& out, const Core& core, const CoreGeometry& geometry, const CoreCorner& corner) {
   if (core.transverse_acceleration.empty()) return;
   double most = -1e300, least = 1e300;
@@ -136,7 +136,7 @@ void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geom
   double all = 0.0, capacity = 0.0;
   const std::vector<CoreCorner> corners = geometry.corners(core.is_middle(limb), side_of_limb(core, body, part), reach);
   for (const CoreCorner& corner : corners) {
-    double count = 0.0, area = 0.0, width = 0.0, pressed = 0.0; // `pressed`: area times pressure
+    double count = 0.0, area = 0.0, width = 0.0, pressed = 0.0; // area in m², width in m; `pressed`: normal force, N
     for (const Lap& lap : corner.laps) {
       count += lap.count;
       area += lap.count * lap.area;
@@ -227,7 +227,7 @@ ExitCode core(const CoreOptions& options, Console& console) {
   const auto loaded = load_model(options.model, options.overrides);
   const std::vector<const Core*> cores = chosen_cores(options, *loaded);
   std::ostream silent(nullptr);
-  std::ostream& out = files.has_words() ? console.out : silent;
+  std::ostream& out = files.may_print() ? console.out : silent;
   const bool is_drawn_there = options.image && is_standard_output(*options.image);
   if (is_drawn_there && cores.size() > 1)
     throw UsageError("--svg -: there are " + std::to_string(cores.size()) + " cores with one drawing each: choose one with --core");

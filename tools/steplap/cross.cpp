@@ -90,7 +90,7 @@ CrossCheckOptions options_for(const LoadedModel& loaded, const System& system, d
 
 bool cross_check_one(const LoadedModel& loaded, double cpu_limit, Console& console) {
   const SimulationOptions base = sampled_for_comparison(loaded.model);
-  const std::unique_ptr<System> system = compile(loaded.model); // a new system with its own channels
+  const std::unique_ptr<System> system = compile(loaded.model); // separate, because options of this check add channels to it
   add_audit_channels(*system, loaded.model);
   const CrossCheck check = cross_check(*system, initial_state_of(loaded), base, options_for(loaded, *system, cpu_limit));
   const bool is_trusted = check.outcome != CrossOutcome::disagree && finished_runs(check) >= 2;

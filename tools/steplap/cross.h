@@ -1,4 +1,5 @@
-// Option `steplap check --cross`: runs every model by methods that have little in common, and reports differences.
+// Option `steplap check --cross`: runs every model with several independent integration and contact methods and reports differences between
+// their results.
 #pragma once
 
 #include "mbd/run/run.h"

@@ -27,7 +27,7 @@ struct DiffOptions {
   bool is_sameness_required = false;
 };
 
-constexpr std::size_t k_longest = 40; // characters of a value that is not a number
+constexpr std::size_t k_longest = 40; // longest text shown for a value that is not a number, in characters
 
 std::string shortened(const std::string& text) {
   std::size_t length = 0, end = 0;
@@ -36,7 +36,7 @@ std::string shortened(const std::string& text) {
   return end < text.size() ? text.substr(0, end) + "…" : text;
 }
 
-// Shows six digits, or all if the other value has the same six.
+// Formats a value with six digits, or with all if six do not distinguish it from the other value.
 Cell value_cell(const std::optional<double>& value, const std::optional<double>& other, const std::string& text, const std::string& unit) {
   if (!value) return text.empty() ? Cell("-") : Cell(shortened(shown(text)));
   const std::string usual = quantity_text(*value, unit);

@@ -20,10 +20,9 @@ using Align = TextTable::Align;
 using Json = OrderedJson;
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_same_value = 1e-9;   // of the larger value; used if there are no error estimates, because runs with other steps agree to
-                                        // this accuracy
-constexpr std::size_t k_most_rows = 20; // of events, and of extremes, on the screen
-constexpr double k_least_share = 0.005; // smaller changes of a share round to 0 % of the limit
+constexpr double k_same_value = 1e-9;   // relative difference of equal values without error estimates, from runs with different steps
+constexpr std::size_t k_most_rows = 20; // largest number of rows in the tables of events and of extremes
+constexpr double k_least_share = 0.005; // changes of a utilisation below 0.5 % of the limit are shown as 0 % and therefore omitted
 
 double number_in(const Json& json, const char* key) {
   const auto found = json.find(key);
@@ -40,7 +39,7 @@ std::optional<double> error_in(const Json& json, const std::string& key) {
   return json.contains(key) ? std::optional(number_in(json, key.c_str())) : std::nullopt;
 }
 
-/// A number of a run with its error.
+/// A number in the results of a run, with its error.
 struct Measured {
   double value = k_nan;
   std::optional<double> error;
@@ -54,12 +53,12 @@ Measured measured_in(const Json& json, const std::string& key, const std::string
 bool differ(const Measured& a, const Measured& b) {
   if (std::isnan(a.value) || std::isnan(b.value)) return std::isnan(a.value) != std::isnan(b.value);
   const double difference = std::abs(a.value - b.value), rounding = k_same_value * std::max(std::abs(a.value), std::abs(b.value));
-  return difference > std::max(rounding, a.error.value_or(0.0) + b.error.value_or(0.0)); // false for NaN
+  return difference > std::max(rounding, a.error.value_or(0.0) + b.error.value_or(0.0)); // false if an error is NaN
 }
 
 // Returns both values with few digits and one prefix, or with all digits if few do not distinguish them.
 std::pair<Cell, Cell> cells_of(const Measured& a, const Measured& b, const std::string& unit) {
-  const double column = std::fmax(std::abs(a.value), std::abs(b.value)); // the finite one if the other is NaN
+  const double column = std::fmax(std::abs(a.value), std::abs(b.value)); // fmax ignores NaN and returns the other value
   const auto few = [&](const Measured& m) { return shown_quantity(m.value, unit, {.error = m.error, .limit = {}, .column = column}); };
   const bool is_told_apart = few(a) != few(b);
   const auto cell = [&](const Measured& m) {
@@ -68,7 +67,7 @@ std::pair<Cell, Cell> cells_of(const Measured& a, const Measured& b, const std::
   return {cell(a), cell(b)};
 }
 
-// Returns an empty cell if the value before was zero within its error.
+// Returns the relative change from a to b. The cell is empty if a is zero within its error, or if one of them is NaN.
 Cell change_of(const Measured& a, const Measured& b) {
   if (std::isnan(a.value) || std::isnan(b.value) || std::abs(a.value) <= std::max(k_same_value * std::abs(b.value), a.error.value_or(0.0)))
     return "";
@@ -124,7 +123,7 @@ std::size_t print_criteria(std::ostream& out, const Json& a, const Json& b) {
   return table.rows().size() - 1;
 }
 
-// Prints how much of its limit each element uses, those first that come nearest to it in either run.
+// Prints the utilisation of each element's limit in both runs, in descending order of the larger one. Returns the number of changes.
 std::size_t print_shares(std::ostream& out, const Json& a, const Json& b) {
   struct Row {
     double worst;
@@ -181,7 +180,7 @@ std::size_t print_joints(std::ostream& out, const Json& a, const Json& b) {
 template <class Value> using ByEvent = std::map<std::pair<std::string, std::string>, Value>;
 using EventTimes = ByEvent<std::vector<Measured>>;
 
-// Returns the times of main events. The others concern the integrator only and depend on its steps.
+// Returns the times of main events by element and kind. Other events depend on the integrator's steps.
 EventTimes times_of(const ShownRun& run) {
   EventTimes times;
   for (const ResultEvent& event : run.events)
@@ -265,7 +264,7 @@ std::size_t print_extremes(std::ostream& out, const Json& a, const Json& b) {
 }
 
 // Prints entries that exist in one of the runs only, and returns their number.
-std::size_t print_missing(std::ostream& out, const Json& a, const Json& b) {
+std::size_t print_channels_of_one_run(std::ostream& out, const Json& a, const Json& b) {
   std::size_t count = 0;
   for (const bool is_gone : {true, false}) {
     const Json &from = (is_gone ? a : b).at("extremes"), &to = (is_gone ? b : a).at("extremes");
@@ -301,7 +300,7 @@ std::size_t print_limit_changes(std::ostream& out, const ShownRun& before, const
 
 std::size_t print_other_changes(std::ostream& out, const ShownRun& before, const ShownRun& after) {
   const Json &a = before.summary, &b = after.summary;
-  return print_joints(out, a, b) + print_events(out, before, after) + print_extremes(out, a, b) + print_missing(out, a, b);
+  return print_joints(out, a, b) + print_events(out, before, after) + print_extremes(out, a, b) + print_channels_of_one_run(out, a, b);
 }
 
 void print_unknown_errors(std::ostream& out, const ShownRun& before, const ShownRun& after) {

@@ -23,7 +23,7 @@ namespace {
 
 using Align = TextTable::Align;
 
-constexpr double k_unit = 1e-3; // m, rad; values below 1e-9 of it are regarded as rounding
+constexpr double k_unit = 1e-3; // scale of displacements, m and rad: values below 1e-9 times this are shown as zero
 
 const char* const k_of_one_rest = " at this rest, which is one of many: they depend on the path, since friction holds the machine";
 
@@ -47,9 +47,9 @@ void print_poses(std::ostream& out, const System& system, const State& start, co
 }
 
 void print_reactions(std::ostream& out, const Model& model, const Equilibrium& found) {
-  const std::unique_ptr<System> system = compile(model); // a separate system, because its drives are held
+  const std::unique_ptr<System> system = compile(model); // a copy, because drives are held fixed in it
   const std::vector<double> values = values_at_rest(*system, found.state);
-  std::map<std::string, double> scale; // by unit
+  std::map<std::string, double> scale; // largest absolute value per unit
   for (std::size_t i = 0; i < values.size(); ++i)
     scale[system->channels[i].unit] = std::max(scale[system->channels[i].unit], std::abs(values[i]));
   TextTable table({Align::left, Align::right});

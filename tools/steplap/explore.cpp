@@ -25,9 +25,9 @@ struct ExploreOptions {
   bool is_without_browser = false;
 };
 
-struct Ending {
+struct ExplorerEnd {
   Explorer& explorer;
-  ~Ending() { explorer.end(); }
+  ~ExplorerEnd() { explorer.end(); }
 };
 
 unsigned short port_of(const ExploreOptions& options) {
@@ -40,8 +40,8 @@ unsigned short port_of(const ExploreOptions& options) {
   return port;
 }
 
-// Starts the browser without a shell and as an independent process: it continues after this program ends and leaves no zombie if it ends
-// first.
+// Starts the browser without a shell, as a process that is independent of this program and never becomes a zombie. Returns false if it
+// cannot be started.
 bool open_browser(const std::string& address) {
   std::string words[] = {"xdg-open", address};
   char* arguments[] = {words[0].data(), words[1].data(), nullptr};
@@ -61,7 +61,7 @@ bool open_browser(const std::string& address) {
   close(ends[1]);
   if (child > 0) waitpid(child, nullptr, 0);
   char failed = 0;
-  const bool is_open = child > 0 && read(ends[0], &failed, 1) == 0; // closed when the browser program has started
+  const bool is_open = child > 0 && read(ends[0], &failed, 1) == 0; // the pipe closes without data when the browser has been started
   close(ends[0]);
   return is_open;
 }
@@ -73,7 +73,7 @@ ExitCode explore(const ExploreOptions& options, Console& console) {
   Explorer explorer(options.models, options.overrides);
   const InterruptionGuard guard;
   LocalServer server(port, [&explorer](const PageRequest& request, const SendReply& send) { explorer.answer(request, send); });
-  const Ending ending{explorer}; // must be destroyed before the server, because waiting requests hold connections
+  const ExplorerEnd ending{explorer}; // must be destroyed before the server, because waiting requests hold connections
   console.out << server.address() << "\n" << std::flush;
   if (!console.out) return ExitCode::done; // the address could not be printed; reported as an output error
   const bool has_screen = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
@@ -82,7 +82,7 @@ ExitCode explore(const ExploreOptions& options, Console& console) {
   if (console.verbosity != Verbosity::quiet)
     console.out << "The page is served on this computer only, to anyone who has this address. Ctrl-C ends it.\n" << std::flush;
   server.run([&explorer] {
-    if (noted_signal() != 0) return false;
+    if (recorded_signal() != 0) return false;
     explorer.tick();
     return true;
   });

@@ -49,22 +49,22 @@ InterruptionGuard::~InterruptionGuard() {
   for (std::size_t i = 0; i < k_signals.size(); ++i) sigaction(k_signals[i], &before[i], nullptr);
 }
 
-void let_writing_fail() {
+void report_write_errors() {
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
-void end_if_nobody_reads(int descriptor) {
+void end_if_pipe_is_closed(int descriptor) {
   pollfd ends{descriptor, 0, 0};
   if (poll(&ends, 1, 0) != 1 || (ends.revents & POLLERR) == 0) return;
   std::signal(SIGPIPE, SIG_DFL);
   std::raise(SIGPIPE);
 }
 
-int noted_signal() { return noted; }
+int recorded_signal() { return noted; }
 
 std::string interruption() { return noted == 0 ? "" : std::string("stopped by ") + name_of_signal(noted); }
 
-void end_by_noted_signal() {
+void end_by_recorded_signal() {
   if (noted == 0) return;
   std::signal(noted, SIG_DFL);
   std::raise(noted);

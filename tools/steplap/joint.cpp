@@ -69,7 +69,7 @@ Cell area_cell(double area) {
 }
 
 std::string point_text(const Vec2& point) {
-  // Distances smaller than an atom are rounding.
+  // Coordinates below 1e-10 m, the size of an atom, are rounding errors and shown as zero.
   const auto coordinate = [](double x) { return quantity_text(std::abs(x) < 1e-10 ? 0.0 : x, "m"); };
   return "(" + coordinate(point.x()) + ", " + coordinate(point.y()) + ")";
 }
@@ -116,7 +116,7 @@ void print_usage(std::ostream& out, const JointView& view, const Vec3& wrench) {
   out << table;
 }
 
-// Tells to which elements the capacity belongs: a rigid joint carries the whole load until it slides.
+// Prints how the joint shares its load with parallel elements. A rigid joint carries the whole load until it slides.
 void print_sharing(std::ostream& out, const JointView& view) {
   if (is_elastic(*view.joint)) out << "elastic: yields before it slides";
   if (view.beside.empty()) {

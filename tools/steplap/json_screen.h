@@ -16,12 +16,12 @@
 
 namespace steplap {
 
-/// Output stream for a command.
+/// Output stream that collects a command's lines and tables and returns them as one JSON document.
 class JsonScreen : public std::ostringstream, public TableSink {
 public:
   void begin(const About& about) override;
   void take(const TextTable& table) override;
-  /// Adds a JSON document to the present result, in addition to its tables.
+  /// Adds a JSON document to the result of the present subject, in addition to its tables.
   void put(const std::string& name, OrderedJson document);
   /// Returns the whole output as JSON text.
   [[nodiscard]] std::string document(const std::string& program, const std::string& command, int exit_code);

@@ -1,5 +1,4 @@
-// Messages of the program about its work, one line each on the error stream: "steplap: warning: …". Tables and other results do not use the
-// log.
+// Status messages on the error stream, one line each: "steplap: warning: …". Results and tables do not use the log.
 #pragma once
 
 #include "tools/steplap/console.h"

@@ -67,7 +67,7 @@ ModelUpdate updated(const std::string& text, const std::string& file, const Mode
   for (const RenamedKey& key : model.renamed_keys) {
     const std::optional<std::size_t> at = key.where.file == file ? place_of_key(text, key) : std::nullopt;
     if (at) places.emplace_back(*at, &key);
-    else ++update.left_keys;
+    else ++update.missing_keys;
   }
   std::sort(places.begin(), places.end());
   places.erase(std::unique(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.first == b.first; }), places.end());

@@ -13,7 +13,7 @@ struct ModelUpdate {
   std::string text;             ///< new content of the file
   bool adds_format = false;     ///< true if a line `format = 1` was added
   std::size_t renamed_keys = 0; ///< number of keys that were renamed
-  std::size_t left_keys = 0;    ///< number of old names that do not occur in the text of this file, for example those in an extended file
+  std::size_t missing_keys = 0; ///< old names that were not found in this file's text, for example because an extended file contains them
 };
 
 /// Updates `text`, the content of `file`, according to the findings in `model`, which was read from it.

@@ -160,7 +160,7 @@ ExitCode modes(const ModesOptions& options, Console& console) {
     const VibrationModes found = vibration_modes(*loaded->system, state, wanted);
     if (options.output) files.write(options.output, modes_csv(*loaded->system, found));
     if (options.page) files.write(options.page, page_of(*loaded, rest, found, wanted));
-    if (files.has_words()) print_modes(console.out, *loaded, found, wanted);
+    if (files.may_print()) print_modes(console.out, *loaded, found, wanted);
     for (const std::string& remark : remarks_on(*loaded->system, rest)) log_warning("'" + loaded->path + "': " + remark);
   } catch (const NumericalFailure& failure) {
     log_error("'" + loaded->path + "': " + failure.what());

@@ -21,10 +21,10 @@ struct NewOptions {
   std::string kind;
   std::optional<std::string> output;
   bool is_overwriting = false;
-  std::map<std::string, std::optional<std::string>> values; ///< by option
+  std::map<std::string, std::optional<std::string>> values; ///< values given by the user, by option name
 };
 
-// Returns the text between the next pair of quotes from `at`, and moves `at` behind them.
+// Returns the text between the next pair of quotes after `at`, and moves `at` behind the closing quote.
 std::string_view quoted(std::string_view line, std::size_t& at) {
   const std::size_t begin = line.find('"', at), end = begin == std::string_view::npos ? begin : line.find('"', begin + 1);
   if (end == std::string_view::npos) return {};
@@ -61,11 +61,11 @@ const ModelTemplate& template_called(const std::string& kind) {
   throw UsageError("there is no kind '" + kind + "' to start from" + did_you_mean(kind, names) + "; there are " + list);
 }
 
-// Returns the text with the given values in place of those of the template; with `only`, those of this option.
+// Returns the template with the values given by the user. If `only` names an option, the other parameters keep the template's values.
 std::string filled(const ModelTemplate& one, const NewOptions& options, const std::string& only = "") {
   std::string text(one.text);
   std::vector<TemplateParameter> parameters = one.parameters();
-  std::reverse(parameters.begin(), parameters.end()); // from the end, so that positions before stay valid
+  std::reverse(parameters.begin(), parameters.end()); // replaced from the end, so that earlier positions remain valid
   for (const TemplateParameter& p : parameters) {
     const auto given = options.values.find(p.option());
     if (given != options.values.end() && given->second && (only.empty() || only == p.option()))
@@ -98,14 +98,14 @@ ExitCode write_model(const NewOptions& options, Console& console) {
   const ModelTemplate& one = template_called(options.kind);
   refuse_wrong_values(one, options);
   const std::string text = filled(one, options);
-  // Values that are valid individually may be invalid together; this is reported now, not when the file is used.
+  // Values that are valid individually may be incompatible. Reading the new model now reports this before the file is written.
   const auto loaded = load_given(parse_given_model(text, one.name + ".toml", program_catalogue()), one.name);
   for (const Finding& finding : findings_of(*loaded))
     if (finding.level == FindingLevel::warning) log_warning(finding.text);
   const std::string output = options.output.value_or("-");
   const OutputFiles files(console, {{"-o", output}}, options.is_overwriting);
   files.write(output, text);
-  if (files.has_words()) console.out << "Written to " << output << ". Look at it, then: steplap simulate " << output << " --report\n";
+  if (files.may_print()) console.out << "Written to " << output << ". Look at it, then: steplap simulate " << output << " --report\n";
   return ExitCode::done;
 }
 
@@ -141,7 +141,7 @@ parameters.NAME for one run. Values are SI or carry a unit.
   command.options = {{"KIND", &o->kind, "KIND", "block, machine or transformer", true},
                      {"-o,--output", &o->output, "FILE", "the file to write (default: the standard output)"},
                      {"-f,--force", &o->is_overwriting, "", "overwrite an earlier file"}};
-  std::map<std::string, std::string> docs; // by option; several templates may have an option of the same name
+  std::map<std::string, std::string> docs; // help texts by option; several templates may have the same option
   std::vector<std::string> order;
   for (const ModelTemplate& one : model_templates())
     for (const TemplateParameter& p : one.parameters()) {

@@ -13,7 +13,7 @@ namespace steplap {
 /// A parameter of a template that has a range and is therefore an option.
 struct TemplateParameter {
   std::string name;  ///< name in the file: "window_height"
-  std::string value; ///< "1.7 m"
+  std::string value; ///< value in the template, "1.7 m"
   std::string low, high;
   std::string meaning, source;
   std::size_t begin = 0, end = 0; ///< position of the value in the text
@@ -24,8 +24,8 @@ struct TemplateParameter {
 
 /// A model template.
 struct ModelTemplate {
-  std::string name;      ///< "transformer"
-  std::string_view text; ///< the file
+  std::string name;      ///< name of the template, "transformer"
+  std::string_view text; ///< text of the model file
   [[nodiscard]] std::vector<TemplateParameter> parameters() const;
 };
 

@@ -47,7 +47,7 @@ void refuse_wrong_streams(const Command& command) {
 }
 
 OutputFiles::OutputFiles(Console& console, std::initializer_list<OutputFile> files, bool is_overwriting)
-    : console_(console), is_overwriting_(is_overwriting), has_words_(console.verbosity != Verbosity::quiet) {
+    : console_(console), is_overwriting_(is_overwriting), may_print_(console.verbosity != Verbosity::quiet) {
   const char* taken = nullptr;
   for (const OutputFile& file : files) {
     if (!file.path || !is_standard_output(*file.path)) continue;
@@ -55,7 +55,7 @@ OutputFiles::OutputFiles(Console& console, std::initializer_list<OutputFile> fil
     if (json_screen(console.out))
       throw UsageError(std::string(file.option) + " - and --json: the standard output can hold one of them only");
     taken = file.option;
-    has_words_ = false;
+    may_print_ = false;
   }
 }
 

@@ -7,9 +7,9 @@
 
 namespace steplap {
 
-/// An option that names an output file, with its value.
+/// An option that names an output file, and the file name given.
 struct OutputFile {
-  const char* option; ///< option for messages, "-o"
+  const char* option; ///< name of the option for error messages, "-o"
   std::optional<std::string> path;
 };
 
@@ -25,13 +25,13 @@ public:
   /// Throws UsageError if two files, or a file and the tables of --json, use the standard output.
   OutputFiles(Console& console, std::initializer_list<OutputFile> files, bool is_overwriting = false);
   /// Returns true if the command may print messages: not with -q, and not if the standard output contains a file.
-  [[nodiscard]] bool has_words() const { return has_words_; }
+  [[nodiscard]] bool may_print() const { return may_print_; }
   /// Writes the whole file or nothing. Does nothing if no path was given. Throws FileError.
   void write(const std::optional<std::string>& path, const std::string& content) const;
 
 private:
   Console& console_;
-  bool is_overwriting_, has_words_;
+  bool is_overwriting_, may_print_;
 };
 
 } // namespace steplap

@@ -14,11 +14,13 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_columns = 100, k_all_columns = 1000;                    // the second with all digits
-constexpr std::size_t k_all_lines = 100;                                        // for texts that are never cut
-constexpr std::size_t k_story_lines = 10, k_most_bars = 5, k_most_warnings = 3; // chosen so that the screen has at most 30 lines
-constexpr double k_least_share = 0.005;                                         // smaller utilisations round to 0 % and are omitted
-constexpr int k_bar = 20;                                                       // characters
+// line widths, in characters; the second if all digits are shown
+constexpr std::size_t k_columns = 100, k_all_columns = 1000;
+constexpr std::size_t k_all_lines = 100;                                        // number of lines for texts that must not be shortened
+constexpr std::size_t k_story_lines = 10, k_most_bars = 5, k_most_warnings = 3; // limits that keep the screen within 30 lines
+// smaller utilisations are shown as 0 % and therefore omitted
+constexpr double k_least_share = 0.005;
+constexpr int k_bar = 20; // length of a full bar, in characters
 
 std::string coloured(const std::string& text, const char* colour, bool is_coloured) {
   return is_coloured ? std::string("\x1b[") + colour + "m" + text + "\x1b[0m" : text;
@@ -46,7 +48,7 @@ void print_head(std::ostream& out, const OrderedJson& summary, bool is_coloured)
 }
 
 void print_story(std::ostream& out, const OrderedJson& summary) {
-  const auto main = summary.at("events").at("main").get<std::size_t>(); // the others concern the integrator only
+  const auto main = summary.at("events").at("main").get<std::size_t>(); // other events are details of the integration
   out << "\nWhat happened: " << (main == 0 ? "no events" : counted(main, "event", "events")) << "\n";
   const OrderedJson& story = summary.at("overview").at("story");
   std::size_t lines = 0;
@@ -101,14 +103,14 @@ void print_warnings(std::ostream& out, const OrderedJson& findings, bool is_colo
   if (count < warnings.size()) out << "… and " << warnings.size() - count << " more warnings, see 'findings' in summary.json\n";
 }
 
-// Prints findings whose reason the model explains; they are part of the result.
+// Prints the notes among the findings: their reason is explained in the model, so they belong to the result.
 void print_notes(std::ostream& out, const OrderedJson& findings) {
   for (const OrderedJson& f : findings)
     if (f.at("code") == "friction_by_source") out << wrapped("Note: " + finding_text(f), k_columns, 6, 3) << "\n";
 }
 
-// Returns the text for a level of trust. It refers to numerical errors only, not to effects that the model leaves out.
-std::string words_of_level(const std::string& level) {
+// Returns a text for the level of numerical accuracy. It says nothing about effects that the model omits.
+std::string text_of_level(const std::string& level) {
   return level == "good" ? "small" : level == "limited" ? "not known to be small" : "not known";
 }
 
@@ -127,8 +129,8 @@ void print_overview(std::ostream& out, const ShownRun& run, const OverviewStyle&
   print_bars(out, overview.at("utilisations"), style.has_all_digits);
   const char* const remedy = run.summary.at("error_estimate") == "too dear" ? " (--estimate-error)" : "";
   out << "\n"
-      << wrapped("Numerical error: " + words_of_level(text_at(trust, "level")) + ". " + shown(text_at(trust, "text")) + remedy, k_columns,
-                 7, 3)
+      << wrapped("Numerical error: " + text_of_level(text_at(trust, "level")) + ". " + shown(text_at(trust, "text")) + remedy, k_columns, 7,
+                 3)
       << "\n";
   if (trust.contains("guards")) out << cut("Checked by: " + shown(list_of(trust.at("guards"))), k_columns) << "\n";
   const OrderedJson& findings = run.summary.at("findings");

@@ -10,7 +10,7 @@ namespace steplap {
 
 /// How the summary is printed.
 struct OverviewStyle {
-  bool is_coloured = false;    ///< verdict and warnings
+  bool is_coloured = false;    ///< true: verdict and warnings are coloured
   bool has_all_digits = false; ///< lines may then be longer than 100 columns
   bool has_warnings = true;    ///< false if the screen has shown the warnings before
 };

@@ -27,7 +27,7 @@ struct PlotOptions {
   bool is_beside = false, is_overwriting = false;
 };
 
-// Contents of a figure, before the runs are known.
+// Figure as requested on the command line, before the runs have been read.
 struct FigureRequest {
   std::string title;
   std::vector<std::string> channels, bounds;
@@ -98,16 +98,16 @@ std::string shell_quoted(const std::string& text) {
 }
 
 // A temporary folder for script and image, removed at the end.
-class Scratch {
+class TemporaryFolder {
 public:
-  Scratch() {
+  TemporaryFolder() {
     std::string name = (fs::temp_directory_path() / "steplap-XXXXXX").string();
     if (!::mkdtemp(name.data())) throw FileError(name, "cannot write to '" + fs::temp_directory_path().string() + "'");
     path_ = name;
   }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  ~Scratch() {
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
   }
@@ -118,7 +118,7 @@ private:
 };
 
 std::string drawn(const Figure& figure, const std::string& ending, const std::string& output) {
-  const Scratch scratch;
+  const TemporaryFolder scratch;
   const std::string image = scratch.at("image"), script = scratch.at("script");
   write_file(script, gnuplot_script(figure, ending, image));
   const int status =
@@ -140,7 +140,7 @@ ExitCode plot(const PlotOptions& options, Console& console) {
   std::vector<FigureRequest> figures{{"", options.channels, {}}};
   if (!options.plots.empty()) figures = plots_of_model(runs.front(), options.plots);
   files.write(options.output, drawn(figure_of(runs, figures, options.is_beside), ending.substr(1), options.output));
-  if (files.has_words()) console.out << "Written to " << options.output << "\n";
+  if (files.may_print()) console.out << "Written to " << options.output << "\n";
   return ExitCode::done;
 }
 

@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using Align = TextTable::Align;
 
-constexpr std::size_t k_shown_events = 12; // the screen has thirty lines
+constexpr std::size_t k_shown_events = 12; // keeps the output within thirty lines
 constexpr OptionWords<DriftCorrection, 2> k_drifts{{{"none", DriftCorrection::none}, {"line", DriftCorrection::line}}};
 
 struct RecordOptions : ReadingOptions {
@@ -99,7 +99,7 @@ private:
   SignalSink* b_;
 };
 
-// Subtracts gravity from an axis of the record, which is known only after the columns have been read.
+// Subtracts gravity from the axis given by the user. The axes of a record are known only after its columns have been read.
 class GravityFirst : public SampleSink {
 public:
   GravityFirst(Conditioning conditioning, std::optional<std::string> gravity, const RecordOptions& options, SignalSink& sink)
@@ -149,7 +149,7 @@ void print_events(std::ostream& out, const RecordResult& result) {
   std::vector<const ShockEvent*> order;
   for (const EventResult& found : result.events) order.push_back(&found.event);
   const auto size = [](const ShockEvent* e) { return std::abs(e->axes[e->worst].peak); };
-  if (order.size() > k_shown_events) { // the largest, in order of time
+  if (order.size() > k_shown_events) { // shows the largest events in order of time
     std::partial_sort(order.begin(), order.begin() + k_shown_events, order.end(),
                       [&](const auto* a, const auto* b) { return size(a) > size(b); });
     order.resize(k_shown_events);
@@ -211,7 +211,7 @@ void print_result(std::ostream& out, const RecordResult& result, const std::opti
   else print_events(out, result);
 }
 
-// A sink that ignores the signal; only the Conditioner before it matters.
+// Ignores the signal. Used where only the results of the preceding Conditioner are needed.
 class DiscardingSink : public SignalSink {
 public:
   void begin(const RecordLayout&, double) override {}
@@ -231,8 +231,8 @@ std::vector<std::array<double, 3>> means_of(const std::string& file, const Recor
   return first.conditioner().segment_means();
 }
 
-// Returns an error if the reading at rest is a large fraction of the threshold, because events would then report gravity, not shocks.
-std::optional<std::string> events_hang_on_gravity(const RecordOptions& options, const RecordResult& result) {
+// Returns an error if the mean reading at rest exceeds half the threshold on any axis: gravity would then trigger the event search.
+std::optional<std::string> gravity_problem(const RecordOptions& options, const RecordResult& result) {
   constexpr double k_felt = 0.5;
   if (options.gravity || options.quiet || result.recording.layout.is_peaks) return {};
   for (std::size_t i = 0; i < result.recording.layout.axes.size(); ++i) {
@@ -247,7 +247,7 @@ std::optional<std::string> events_hang_on_gravity(const RecordOptions& options, 
 
 struct Outputs {
   std::string folder;    ///< output folder; "": none
-  std::size_t event = 0; ///< 0: all
+  std::size_t event = 0; ///< number of the event whose samples are written; 0: all events
   DriftCorrection drift = DriftCorrection::none;
 };
 
@@ -281,7 +281,7 @@ void process(const std::string& file, const RecordOptions& options, const Output
   SignalWriter writer(outputs.folder, false);
   const bool writes_signal = !outputs.folder.empty() && outputs.event == 0;
   Tee tee(finder, writes_signal ? &writer : nullptr);
-  struct Keep : GravityFirst {
+  struct LayoutRecorder : GravityFirst {
     using GravityFirst::GravityFirst;
     const RecordLayout** at = nullptr;
     void begin(const RecordLayout& seen) override {
@@ -299,7 +299,7 @@ void process(const std::string& file, const RecordOptions& options, const Output
     result.interpolated = first.conditioner().interpolated();
     result.drift = first.conditioner().drift();
   }
-  const std::optional<std::string> no_events = events_hang_on_gravity(options, result);
+  const std::optional<std::string> no_events = gravity_problem(options, result);
   if (no_events && (options.is_json || !outputs.folder.empty())) throw UsageError("'" + file + "': " + *no_events);
   if (outputs.event > 0 && !window)
     throw UsageError("--event " + std::to_string(outputs.event) + ": the record has " + counted(result.events.size(), "event", "events") +
@@ -347,7 +347,7 @@ ExitCode make(const RecordOptions& options, Console& console) {
   if (options.files.size() != 1) throw UsageError("--make: name one file to write");
   const OutputFiles files(console, {{"FILE", options.files.front()}}, options.is_overwriting);
   files.write(options.files.front(), make_record(*options.make));
-  if (files.has_words()) console.out << "Written to " << options.files.front() << "\n";
+  if (files.may_print()) console.out << "Written to " << options.files.front() << "\n";
   return ExitCode::done;
 }
 
@@ -371,9 +371,7 @@ ExitCode record(const RecordOptions& options, Console& console) {
     if (options.output) outputs.folder = folders[i]->staging();
     process(options.files[i], options, outputs, console);
   }
-  for (const auto& folder : folders)
-    commit(*folder, is_silent, console); // after all files have been read, so that none can be rejected
-                                         // any more
+  for (const auto& folder : folders) commit(*folder, is_silent, console); // only if every file has been read without error
   return ExitCode::done;
 }
 

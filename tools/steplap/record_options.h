@@ -1,4 +1,4 @@
-// Options for reading a recorder's file and for finding its shocks, shared by all commands that read one.
+// Options for reading recorder files and for finding shocks in them, common to all commands that do this.
 #pragma once
 
 #include "tools/steplap/command.h"
@@ -20,9 +20,9 @@ struct ReadingOptions {
 /// Returns the options, which refer to `o`.
 [[nodiscard]] std::vector<Option> reading_options(ReadingOptions& o);
 
-/// Returns a number above `least`. Throws UsageError.
+/// Parses a number greater than `least`, in `unit`. Throws UsageError.
 [[nodiscard]] double number_of(const ReadingOptions::Text& text, const char* option, double least, const char* unit = "");
-/// Returns the value of one of the words. Throws UsageError.
+/// Returns the value that `words` assigns to `text`. Throws UsageError for other texts.
 template <class Words> auto choice(const std::string& text, const char* option, const Words& words) {
   if (const auto meaning = meaning_of(words, text)) return *meaning;
   std::string known;
@@ -30,7 +30,7 @@ template <class Words> auto choice(const std::string& text, const char* option, 
   throw UsageError(std::string(option) + " '" + text + "': give one of " + known);
 }
 
-/// Convert the arguments. Throw UsageError for invalid values.
+/// Convert the command-line arguments. Throw UsageError for invalid values.
 [[nodiscard]] ReadOptions read_options(const ReadingOptions& o);
 [[nodiscard]] EventRules event_rules(const ReadingOptions& o);
 /// Parses the two times of --rest, s.

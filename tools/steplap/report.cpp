@@ -41,17 +41,17 @@ std::string sheet_of_results(const std::vector<std::string>& folders) {
 }
 
 // Returns the path in the folder of a single run, or next to the folders of several.
-std::string usual_place(const std::vector<std::string>& folders, const char* name) {
+std::string default_path(const std::vector<std::string>& folders, const char* name) {
   std::filesystem::path place = folders.front();
   if (folders.size() > 1) place = (place / "").lexically_normal().parent_path().parent_path();
   return (place / name).string();
 }
 
 ExitCode report(const ReportOptions& options, Console& console) {
-  const std::string file = options.output.value_or(usual_place(options.results, options.is_sheet ? "sheet.html" : "report.html"));
+  const std::string file = options.output.value_or(default_path(options.results, options.is_sheet ? "sheet.html" : "report.html"));
   const OutputFiles files(console, {{"-o", file}}, options.is_overwriting);
   files.write(file, options.is_sheet ? sheet_of_results(options.results) : page_of_results(options.results));
-  if (files.has_words()) console.out << "Written to " << file << "\n";
+  if (files.may_print()) console.out << "Written to " << file << "\n";
   return ExitCode::done;
 }
 

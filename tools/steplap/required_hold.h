@@ -1,4 +1,4 @@
-// Exit code of runs of which "hold" is required.
+// Exit code of `--require-hold`, which demands the verdict "hold" of all runs.
 #pragma once
 
 #include "mbd/trust/judgement.h"
@@ -9,7 +9,7 @@
 
 namespace steplap {
 
-/// Returns `done` if all verdicts are "hold"; otherwise criterion_failed, or numerical_failure if some run is not to be trusted.
+/// Returns `done` if all verdicts are "hold". Otherwise returns numerical_failure if a run is not trusted, else criterion_failed.
 [[nodiscard]] inline ExitCode required_hold(const std::vector<const Judgement*>& judgements) {
   const auto is_held = [](const Judgement* one) { return one->verdict == Verdict::hold; };
   const auto is_trusted = [](const Judgement* one) { return one->distrust.empty(); };

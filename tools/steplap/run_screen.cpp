@@ -32,7 +32,7 @@ constexpr std::size_t k_most_events_shown = 30;
 
 std::string text_at(const Json& json, const char* key) { return json.at(key).get<std::string>(); }
 
-// Returns NaN for null, unless "…_is" denotes an infinity.
+// Returns a number of the summary. JSON has no infinity: ±∞ is stored as null with a second entry KEY_is. Other nulls are NaN.
 double number_at(const Json& json, const std::string& key) {
   if (const Json& value = json.at(key); value.is_number()) return value.get<double>();
   const auto which = json.find(key + "_is");
@@ -73,7 +73,7 @@ struct ShownRange {
   [[nodiscard]] const ShownExtreme& largest() const { return std::abs(low.value) > std::abs(high.value) ? low : high; }
 };
 
-// A run with lookup tables.
+// A run with its extremes, indexed by channel name.
 struct TabledRun {
   explicit TabledRun(const ShownRun& shown) : run(shown), summary(shown.summary), name(text_at(summary.at("model"), "name")) {
     for (const auto& [channel, entry] : summary.at("extremes").items()) {
@@ -90,19 +90,19 @@ struct TabledRun {
 
   const ShownRun& run;
   const Json& summary;
-  std::string name; ///< head of its column
+  std::string name; ///< head of the run's column
   std::vector<ShownRange> ranges;
   std::unordered_map<std::string, std::size_t> places;
 };
 
-// Formats "0.6", "12".
+// Formats a value with one digit below 10, otherwise as an integer: "0.6", "12".
 std::string rough_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, value < 10.0 ? "%.1g" : "%.0f", value);
   return text;
 }
 
-// Describes results omitted because of their cost, with the option that requests them.
+// Returns the reason why errors were not estimated. If the cost was too high, it names the option that requests them.
 std::string why_not_estimated(const TabledRun& run) {
   return text_at(run.summary, "error_not_estimated") + (run.summary.at("error_estimate") == "too dear" ? " (--estimate-error)" : "");
 }
@@ -110,8 +110,8 @@ std::string why_not_estimated(const TabledRun& run) {
 void print_no_estimate(std::ostream& out, const TabledRun& run) {
   if (run.has_errors()) return;
   out << "  error not estimated: ";
-  if (!run.run.making || !run.run.making->cost_of_estimate) out << why_not_estimated(run) << "\n";
-  else out << "would take about " << rough_text(*run.run.making->cost_of_estimate) << " s; ask with --estimate-error\n";
+  if (!run.run.cost || !run.run.cost->cost_of_estimate) out << why_not_estimated(run) << "\n";
+  else out << "would take about " << rough_text(*run.run.cost->cost_of_estimate) << " s; ask with --estimate-error\n";
 }
 
 void print_heading(std::ostream& out, const TabledRun& run) {
@@ -142,7 +142,7 @@ void print_events(std::ostream& out, const std::vector<ResultEvent>& events) {
   if (shown > k_most_events_shown) out << "  … and " << shown - k_most_events_shown << " more: see events.csv\n";
 }
 
-// Returns the channels shown: reactions that are not always zero.
+// Returns true for reactions that are not zero during the whole run.
 bool is_shown(const ShownRange& range) {
   return is_reaction(range.name, range.unit) && !std::isnan(range.low.value) && range.largest().value != 0.0;
 }
@@ -160,9 +160,9 @@ std::string extreme_time_text(double t, std::optional<double> error) {
 
 std::string time_of_text(const ShownExtreme& extreme) { return extreme_time_text(extreme.t.value_or(0.0), extreme.t_error); }
 
-// Omits digits of the margin of a joint whose load is only rounding.
+// Formats a joint's margin. It is shown as "> 1e9" if the joint carries only rounding errors.
 std::string small_margin_text(double margin, std::optional<double> error) {
-  constexpr double k_unloaded = 1e9; // above it only the magnitude of a margin is tracked (mbd/simulation/extremes.cpp)
+  constexpr double k_unloaded = 1e9; // larger margins are tracked by magnitude only (mbd/simulation/extremes.cpp)
   if (!std::isfinite(margin)) return "–";
   if (margin > k_unloaded) return "> 1e9";
   if (error) return measured_text(margin, error, "");
@@ -218,8 +218,8 @@ void print_slides(std::ostream& out, const TabledRun& run) {
   if (!table.is_empty()) out << "\nLargest slides\n" << table;
 }
 
-// Prints the largest line load on sheet edges in contact, and the elements that carry load in parallel with a joint.
-void print_beside(std::ostream& out, const std::string& joint, const Json& a) {
+// Prints the largest line load on the joint's sheet edges, N/m, and the elements that carry load in parallel with the joint.
+void print_edges_and_parallel_elements(std::ostream& out, const std::string& joint, const Json& a) {
   if (const auto load = optional_at(a, "largest_edge_load"); load && *load > 0.0) {
     out << "  " << joint << ": sheet edges carried up to " << measured_text(*load, error_at(a, "error_largest_edge_load"), "N/m");
     if (const auto allowed = optional_at(a, "allowed_line_load")) out << ", allowed are " << quantity_text(*allowed, "N/m");
@@ -255,7 +255,7 @@ void print_joints(std::ostream& out, const TabledRun& run) {
   table.add_row({"", "verdict", "first slip", "largest p_req", "at", "margin", "slid", "area lost"});
   for (const auto& [joint, a] : run.summary.at("joints").items()) add_joint(table, joint, a);
   out << "\nStep-lap joints\n" << table;
-  for (const auto& [joint, a] : run.summary.at("joints").items()) print_beside(out, joint, a);
+  for (const auto& [joint, a] : run.summary.at("joints").items()) print_edges_and_parallel_elements(out, joint, a);
 }
 
 std::string value_beside_limit(const Json& criterion) {
@@ -292,14 +292,14 @@ void print_judgement(std::ostream& out, const TabledRun& run) {
                    t ? "at " + extreme_time_text(*t, optional_at(c, "error_t")) : ""});
   }
   out << table;
-  bool is_in_doubt = false;
+  bool is_undecided = false;
   for (const Json& c : criteria) {
     if (text_at(c, "doubt").empty()) continue;
     out << "  '" << text_at(c, "name") << "', " << text_at(c, "criterion") << ": " << text_at(c, "doubt") << "\n";
-    is_in_doubt = true;
+    is_undecided = true;
   }
   if (!run.has_errors()) out << "  judged without the errors of the numbers: " << why_not_estimated(run) << "\n";
-  if (is_in_doubt) out << "  A smaller tolerance or step decides.\n";
+  if (is_undecided) out << "  A smaller tolerance or step decides.\n";
   if (run.summary.contains("second_opinion"))
     print_second_opinion(out, run.summary.at("second_opinion"), number_at(run.summary.at("final_state"), "t"));
 }
@@ -374,7 +374,7 @@ Figure count(const char* name, const char* key) {
   return {name, [key](const TabledRun& run) { return std::to_string(run.summary.at("statistics").at(key).get<long>()); }};
 }
 
-std::vector<Figure> accuracy_and_cost(bool has_making) {
+std::vector<Figure> accuracy_and_cost(bool has_cost) {
   std::vector<Figure> figures{residual("energy residual", "energy_residual", " J"),
                               {"energy exchanged",
                                [](const TabledRun& run) {
@@ -396,19 +396,18 @@ std::vector<Figure> accuracy_and_cost(bool has_making) {
                               count("steps", "steps"),
                               count("steps rejected", "rejections"),
                               count("evaluations", "evaluations")};
-  if (has_making)
-    figures.push_back({"CPU time", [](const TabledRun& run) { return quantity_text(1e3 * run.run.making->cpu_seconds, "ms"); }});
+  if (has_cost) figures.push_back({"CPU time", [](const TabledRun& run) { return quantity_text(1e3 * run.run.cost->cpu_seconds, "ms"); }});
   return figures;
 }
 
 void print_place(std::ostream& out, const ShownRun& run) {
-  if (!run.making) {
+  if (!run.cost) {
     out << "Results: " << shown(run.folder) << "\n";
     return;
   }
   const char* const part = run.summary.contains("failure") ? "partial_" : "";
-  out << "Written to " << run.folder << ": " << part << "trajectory.csv (" << counted(run.making->rows, "row", "rows") << ", "
-      << counted(run.making->channels, "channel", "channels") << ")";
+  out << "Written to " << run.folder << ": " << part << "trajectory.csv (" << counted(run.cost->rows, "row", "rows") << ", "
+      << counted(run.cost->channels, "channel", "channels") << ")";
   for (const char* file : {"events.csv", "summary.json", "model.toml", "drawing.json"}) out << ", " << part << file;
   out << "\n";
 }
@@ -477,7 +476,7 @@ void print_run(std::ostream& out, const ShownRun& shown) {
   print_judgement(out, run);
   print_global_error(out, run);
   TextTable table({Align::left, Align::right});
-  for (const Figure& figure : accuracy_and_cost(shown.making.has_value())) table.add_row({figure.name, figure.text(run)});
+  for (const Figure& figure : accuracy_and_cost(shown.cost.has_value())) table.add_row({figure.name, figure.text(run)});
   out << "\nAccuracy and cost\n" << table << "\n";
   print_place(out, shown);
 }
@@ -507,8 +506,8 @@ void print_comparison(std::ostream& out, const std::vector<ShownRun>& shown) {
       const ShownRange* range = run.find(name);
       return range ? value_text(*range, range->largest()) : "–";
     }));
-  const bool have_making = std::all_of(shown.begin(), shown.end(), [](const ShownRun& run) { return run.making.has_value(); });
-  for (const Figure& figure : accuracy_and_cost(have_making)) table.add_row(cells(figure.name, runs, figure.text));
+  const bool have_cost = std::all_of(shown.begin(), shown.end(), [](const ShownRun& run) { return run.cost.has_value(); });
+  for (const Figure& figure : accuracy_and_cost(have_cost)) table.add_row(cells(figure.name, runs, figure.text));
   print_side_by_side(out, runs, channel_names(runs, is_shown), "Reactions and required pressures");
   print_requested_side_by_side(out, runs);
   out << "\nSide by side\n" << table;

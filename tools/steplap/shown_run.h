@@ -1,4 +1,4 @@
-// Data of a run for the screen: its summary and events, for a new run as for one read from its folder.
+// Data of a run for the screen: summary and events, of a new run or read from a folder.
 #pragma once
 
 #include "mbd/run/ordered_json.h"
@@ -13,19 +13,19 @@
 
 namespace steplap {
 
-/// Data that differ between repetitions of a run and are therefore in no file.
+/// Cost of a run: data that differ between repetitions and are therefore not stored in files.
 struct RunCost {
   double cpu_seconds = 0.0;
-  std::optional<double> cost_of_estimate; ///< s, if errors were not estimated because of this cost
-  std::size_t rows = 0, channels = 0;     ///< of the written trajectory
+  std::optional<double> cost_of_estimate; ///< predicted time of an error estimate that was omitted because of it, s
+  std::size_t rows = 0, channels = 0;     ///< size of the written trajectory
 };
 
 /// A run as shown on the screen.
 struct ShownRun {
   OrderedJson summary;             ///< contents of summary.json (mbd/run/summary.h)
   std::vector<ResultEvent> events; ///< empty if only the overview is shown
-  std::string folder;              ///< folder of its files
-  std::optional<RunCost> making;
+  std::string folder;              ///< folder with the files of the run
+  std::optional<RunCost> cost;
 };
 
 /// Returns the main part of the summary of a new run, without events, for the overview.

@@ -44,7 +44,7 @@ struct SimulateOptions {
   std::optional<std::string> end, step, integrator, tolerance, output_step, digits, time_limit, memory_limit;
   bool is_overwriting = false, is_error_estimated = false, is_estimate_left_out = false, is_reported = false, is_hold_required = false;
 
-  /// --set and its short forms.
+  /// Returns the values of --set and of its short forms.
   [[nodiscard]] std::vector<std::string> all_overrides() const {
     std::vector<std::string> all = overrides;
     if (end) all.push_back("simulation.end=" + *end);
@@ -67,10 +67,10 @@ struct SimulateOptions {
     const auto [last, error] = std::from_chars(digits->data(), end_of_text, count);
     if (error != std::errc() || last != end_of_text || count < 1 || count > k_most)
       throw UsageError("--digits takes a whole number from 1 to " + std::to_string(k_most) + ", or full, not '" + *digits + "'");
-    return {.most = count + 1}; // for numbers whose first digit is 1
+    return {.most = count + 1}; // one more, because a leading digit 1 is not counted
   }
 
-  /// true: writes only the trajectory, to the standard output.
+  /// Returns true if only the trajectory is written, to the standard output.
   [[nodiscard]] bool is_streamed() const { return is_standard_output(output); }
   [[nodiscard]] std::string folder_of(const LoadedModel& loaded) const { return (std::filesystem::path(output) / loaded.name).string(); }
 };
@@ -105,7 +105,7 @@ Budget SimulateOptions::budget() const {
   return budget;
 }
 
-/// A run with the folder of its files.
+/// A finished run and the folder of its files.
 struct FinishedRun {
   Report report;
   std::string folder;
@@ -208,7 +208,7 @@ void show_runs(const SimulateOptions& options, const std::vector<FinishedRun>& r
     shown.push_back(is_whole ? shown_run(run.report, run.folder) : overview_of_run(run.report, run.folder, options.shown_digits()));
   if (put_runs(console.out, shown)) return;
   if (is_whole) print_tables(console.out, shown);
-  else print_overviews(console.out, shown, {.has_all_digits = options.shown_digits().is_full, .has_warnings = false}); // the log has them
+  else print_overviews(console.out, shown, {.has_all_digits = options.shown_digits().is_full, .has_warnings = false}); // already in the log
 }
 
 ExitCode simulate(const SimulateOptions& options, Console& console) {
@@ -247,7 +247,7 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
     for (const FinishedRun& run : runs) folders.push_back(run.folder);
     write_report(folders, page_of(options, models), options.is_overwriting);
   }
-  if (!files.has_words()) return code;
+  if (!files.may_print()) return code;
   show_runs(options, runs, console);
   if (options.is_reported) console.out << "Report: " << page_of(options, models) << "\n";
   return code;

@@ -25,10 +25,10 @@ using namespace assess;
 using Align = TextTable::Align;
 
 constexpr int k_most_directions = 3600;
-constexpr double k_most_acceleration = 1e4; // m/s²
-constexpr double k_unloaded = 1e6;          // margin above which the load is only rounding
-constexpr double k_least_share = 1e-9;      // fraction of the permitted reaction
-constexpr std::size_t k_most_feet = 2;      // number of names in a row
+constexpr double k_most_acceleration = 1e4; // upper limit for --largest, m/s²
+constexpr double k_unloaded = 1e6;          // a load margin above this means that the load is only rounding
+constexpr double k_least_share = 1e-9;      // smaller utilisations of a reaction's limit are not shown
+constexpr std::size_t k_most_feet = 2;      // number of feet named in one row; others are counted
 
 double number_of(const std::string& text, const std::string& option, double low, double high) {
   double value = 0.0;
@@ -98,7 +98,7 @@ void print_cases(std::ostream& out, const StaticProof& proof) {
     if (one.verdict != Verdict::hold) out << "  " << steplap::name_of(one.verdict) << ", " << one.load.name << ": " << one.why << "\n";
 }
 
-// Prints for each kind of limit the direction in which it is lowest.
+// Prints, for each kind of limit, the direction of the acceleration that reaches it first.
 void print_weakest(std::ostream& out, const StaticProof& proof) {
   if (proof.polar.empty()) return;
   TextTable table({Align::left, Align::right, Align::right, Align::right});
@@ -116,7 +116,7 @@ void print_weakest(std::ostream& out, const StaticProof& proof) {
     if (!weakest) continue;
     const StaticLimit& limit = weakest->ray.limits[which];
     if (!std::exchange(is_any, true)) table.add_row({"weakest direction", "towards", "pull", "error"});
-    table.add_row({limit_words(weakest->ray, which), rounded_text(weakest->angle * 57.29577951308232, 4) + "°",
+    table.add_row({limit_text(weakest->ray, which), rounded_text(weakest->angle * 57.29577951308232, 4) + "°",
                    acceleration_text(limit.acceleration), small_text(limit.error) + " m/s²"});
   }
   if (is_any) out << "\n" << table;

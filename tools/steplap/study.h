@@ -5,8 +5,8 @@
 
 namespace steplap {
 
-/// Replaces this process by that program, with the arguments after "study". `words` begins with "study" and ends with null. Returns an exit
-/// code only if the program cannot be started.
+/// Replaces this process by the study program. `words` are its arguments, from "study" to a terminating null. Returns an exit code only if
+/// the program cannot be started.
 int run_study_program(char** words);
 /// As above, for arguments in a vector.
 int run_study_program(const std::vector<std::string>& arguments);

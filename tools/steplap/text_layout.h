@@ -8,7 +8,7 @@ namespace steplap {
 
 /// Returns the number of characters.
 [[nodiscard]] std::size_t width_of(const std::string& text);
-/// Returns the text, shortened to `most` characters, of which the last is then "…".
+/// Returns the text, shortened to `most` characters. The last character of a shortened text is "…".
 [[nodiscard]] std::string cut(const std::string& text, std::size_t most);
 /// Breaks a text at blanks, but not between a number and its unit, into at most `most_lines` lines of `columns` characters; all but the
 /// first are indented. The last line is cut.

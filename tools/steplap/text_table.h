@@ -8,7 +8,7 @@
 
 namespace steplap {
 
-/// A cell of a table: a text for people and, for programs, the number that the text rounds.
+/// A cell of a table: the text that is printed, and the exact number for JSON.
 struct Cell {
   std::string text;
   std::optional<double> value = {}; ///< SI; NaN if missing in a column of numbers
@@ -35,12 +35,13 @@ public:
   enum class Align { left, right };
   using Row = std::vector<Cell>;
 
-  /// `indent` blanks precede every row, two blanks separate columns. `columns` gives the alignment of each.
+  /// Creates a table with one column per entry of `columns`, which gives the alignment. Every row is indented by `indent` blanks; two
+  /// blanks separate columns.
   explicit TextTable(std::vector<Align> columns, int indent = 2);
 
-  /// Sets the name for programs. In a table without column heads each row is a name with its value.
+  /// Sets the key of the table in JSON. A table without column heads becomes an object with one entry per row.
   void set_name(std::string name) { name_ = std::move(name); }
-  /// Sets the name and the column heads. `keys` are the names of the columns for programs, if they differ from the heads.
+  /// Sets the key of the table in JSON and the column heads. `keys` are the JSON keys of the columns if they differ from the heads.
   void set_head(std::string name, const std::vector<std::string>& heads, std::vector<std::string> keys = {});
   /// Adds a row. Missing cells are empty.
   void add_row(Row cells);
@@ -61,7 +62,7 @@ private:
   std::vector<Row> rows_;
 };
 
-/// Subject of the tables that follow, for programs. People see it in the text.
+/// Subject of the tables that follow, for JSON output only; the printed text already names it.
 struct About {
   std::string subject;
 };

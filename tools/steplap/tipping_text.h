@@ -7,7 +7,7 @@
 
 namespace steplap {
 
-/// Prints all parts that can tip and those that are not judged. Prints nothing if nothing stands.
+/// Prints all parts that can tip, and the parts that could not be judged. Prints nothing if no part stands on feet.
 void print_tipping(std::ostream& out, const LoadedModel& loaded, const State& state);
 
 } // namespace steplap

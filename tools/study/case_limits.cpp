@@ -16,7 +16,7 @@ namespace {
 
 using SharedStudyModel = std::shared_ptr<const StudyModel>;
 
-// Returns a name that expressions may use: "1 g forward" becomes "limits_1_g_forward".
+// Returns a valid name for expressions: "limits_1_g_forward" for "1 g forward".
 std::string identifier_of(const std::string& name, const Study& study) {
   std::string text = name;
   for (char& c : text)
@@ -91,7 +91,7 @@ void refuse_equal_names(const std::vector<SharedStudyModel>& models, const Study
                             "two load cases are called '" + models[i]->name + "': their results could not be distinguished"});
 }
 
-// Adds the responses of all load cases of the model, and their models. Returns the least of them as a formula.
+// Adds one model and one reserve response for each load case of `model`. Returns the formula of the least reserve, "min(a, b, …)".
 std::string add_reserves_of(const StudyModel& model, LoadedStudy& loaded, std::vector<Response>& responses, const Location& where,
                             std::vector<Diagnostic>& problems) {
   const std::vector<LoadCase> cases = load_cases_of(model.given);

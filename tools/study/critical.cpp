@@ -55,7 +55,8 @@ private:
   long bad_ = 0;
 };
 
-// Decides for neighbouring points at which the expression is zero whether it is zero everywhere between or only at these points.
+// Adds three points between neighbouring points at which the expression is zero. They show whether it is zero on the whole interval or at
+// its ends only.
 void sample_flats(const LineFunction& line, LineSamples& line_samples) {
   constexpr int k_parts = 4;
   std::vector<double> more;
@@ -87,7 +88,8 @@ std::string monotonic_text(const LineSamples& line_samples) {
   return rises ? "rises all over the range" : falls ? "falls all over the range" : "is constant over the range";
 }
 
-// If the expression is zero at two neighbouring points, it is assumed zero between; adjacent intervals are merged.
+// Reports an interval on which the expression is zero as one finding without a critical value. Extends the previous finding if both
+// intervals are adjacent.
 void add_flat(double low, double high, const std::string& variable, long samples, Answer& answer) {
   answer.degrade(Standing::not_met);
   if (!answer.findings.empty() && answer.findings.back().high == low) {
@@ -99,7 +101,7 @@ void add_flat(double low, double high, const std::string& variable, long samples
   answer.findings.push_back(f);
 }
 
-// Finds intervals with different signs at their ends, and points that are zeros.
+// Returns the intervals at whose ends the expression has different signs, and single points at which it is zero.
 std::vector<Crossing> crossings_of(const LineSamples& line_samples, const std::string& variable, long samples, Answer& answer) {
   std::vector<Crossing> crossings;
   const auto is_zero = [&](std::size_t i) { return i < line_samples.g.size() && line_samples.g[i] == 0.0; };
@@ -115,7 +117,7 @@ std::vector<Crossing> crossings_of(const LineSamples& line_samples, const std::s
   return crossings;
 }
 
-// Adds a note if the points are hardly denser than the crossings: pairs of crossings between two points may then be missed.
+// Adds a note if there are fewer than three points per crossing: two crossings between neighbouring points may then be missed.
 void note_if_too_few_points(std::size_t crossings, long points, Answer& answer) {
   constexpr long k_points_per_crossing = 3; // required points per crossing
   if (crossings < 3 || k_points_per_crossing * static_cast<long>(crossings) < points) return;

@@ -10,7 +10,7 @@ struct CriticalSettings : KindSettings {
   std::string variable;
   std::string expression;  ///< the expression whose zeros are searched
   long points = 21;        ///< number of points of the first scan
-  double tolerance = 1e-9; ///< relative to the variable's range
+  double tolerance = 1e-9; ///< tolerance of a zero, relative to the variable's range
 };
 
 [[nodiscard]] StudyKind critical_kind();

@@ -11,8 +11,8 @@ double Crossing::root() const { return std::abs(g_low) < std::abs(g_high) ? low 
 namespace {
 
 struct Closing {
-  double low, high; ///< values at the ends, halved if an end stays unchanged (Illinois rule)
-  double first;     ///< larger of the two values at the beginning
+  double low, high; ///< function values at the ends; halved if an end stays unchanged (Illinois rule)
+  double first;     ///< larger magnitude of both initial function values
   int stuck = 0;
 };
 
@@ -44,9 +44,10 @@ void close_crossings(std::vector<Crossing>& crossings, double tolerance, const B
     std::vector<double> at;
     for (std::size_t i = 0; i < crossings.size(); ++i) {
       const Crossing& c = crossings[i];
-      if (c.is_bad || c.high - c.low <= tolerance) continue; // an end that is zero to rounding does not end the search
+      // an end value of zero does not end the search, because it may be a rounding error
+      if (c.is_bad || c.high - c.low <= tolerance) continue;
       double x = c.high - closing[i].high * (c.high - c.low) / (closing[i].high - closing[i].low);
-      // The new point keeps a distance from both ends, so that both ends move.
+      // The new point keeps this distance from both ends, so that the interval shrinks from both sides.
       const double inside = 0.3 * tolerance;
       x = round % 4 == 3 ? 0.5 * (c.low + c.high) : std::clamp(x, c.low + inside, c.high - inside);
       which.push_back(i);
@@ -56,7 +57,7 @@ void close_crossings(std::vector<Crossing>& crossings, double tolerance, const B
     const std::vector<double> values = function(which, at);
     for (std::size_t k = 0; k < which.size(); ++k) take(crossings[which[k]], closing[which[k]], at[k], values[k]);
   }
-  constexpr double k_continuous = 1e-3; // of the values at the ends of the initial interval
+  constexpr double k_continuous = 1e-3; // a larger remaining value, relative to the initial values, is a jump
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     Crossing& c = crossings[i];
     c.is_jump = !c.is_bad && std::min(std::abs(c.g_low), std::abs(c.g_high)) > k_continuous * closing[i].first;

@@ -6,11 +6,11 @@
 
 namespace steplap::study {
 
-/// An interval at whose ends the function has different signs.
+/// An interval with different signs of the function at its ends.
 struct Crossing {
   double low = 0.0, high = 0.0, g_low = 0.0, g_high = 0.0;
   bool is_jump = false; ///< true if the function jumps over zero
-  bool is_bad = false;  ///< true if a run inside the interval had no value; the interval is then not reduced further
+  bool is_bad = false;  ///< true if a run inside the interval gave no value; the interval is then not reduced further
 
   /// Returns the end at which the function is closer to zero.
   [[nodiscard]] double root() const;

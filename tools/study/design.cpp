@@ -61,9 +61,10 @@ bool is_whole_number(const Variable& v, const LoadedStudy& loaded) {
   });
 }
 
-// All whole numbers of the range are tried. The mean that is sought is in the middle until the study runs.
+// Prepares the design variable. A whole number gets the list of all whole numbers in its range. The mean of a random variable starts in the
+// middle of its range.
 void prepare_sought(Variable& v, const LoadedStudy& loaded) {
-  constexpr double k_most = 10000; // more are searched like other numbers
+  constexpr double k_most = 10000; // longer ranges of whole numbers are searched like real numbers
   if (v.range.size() == 2 && is_whole_number(v, loaded) && v.range[1] - v.range[0] < k_most) {
     for (double x = std::ceil(v.range[0]); x <= v.range[1]; x += 1.0) v.values.push_back(x);
     v.range.clear();
@@ -127,7 +128,7 @@ void check_variables(const LoadedStudy& loaded, std::vector<Diagnostic>& problem
   }
 }
 
-// Tests the distributions at all values that are sought.
+// Checks that the distributions are valid at all values that the design variable may have.
 void check_laws(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   const std::size_t sought = sought_variable(loaded.study);
   const Variable& v = loaded.study.variables[sought];
@@ -170,11 +171,11 @@ void check_design(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) 
 
 // --- the study
 
-/// One value of the design variable.
+/// Result at one value of the design variable.
 struct DesignValue {
-  double margin = 0.0; ///< least limit state, or reliability index less the target
-  std::string doubt;   ///< if the margin is not known: why; the value counts as not holding then
-  std::string zero{};  ///< if the margin is zero to the rounding of the run: a sentence that says so; the value counts as not holding then
+  double margin = 0.0; ///< least limit state, or reliability index minus its target; negative: the limits do not hold
+  std::string doubt;   ///< reason if the margin is unknown, which is treated as not holding; "" otherwise
+  std::string zero{};  ///< sentence if the margin is zero to rounding, which is treated as not holding; "" otherwise
 };
 
 std::string text_of(const char* format, double a, double b = 0.0) {
@@ -211,7 +212,8 @@ public:
   }
 
 private:
-  // A margin that is zero to rounding at one value is a border. At two neighbours it is a number that stays at its limit.
+  // A margin that is zero to rounding at a single value is a border. If it is zero at two neighbouring values, the number is stuck at its
+  // limit, and both values are unknown.
   void doubt_stretches_of_zeros(const LineSamples& samples) {
     for (std::size_t i = 1; i < samples.x.size(); ++i) {
       DesignValue &before = known_.at(samples.x[i - 1]), &here = known_.at(samples.x[i]);
@@ -231,7 +233,7 @@ private:
 
   [[nodiscard]] bool is_list() const { return !variable_.values.empty(); }
 
-  // Moves a margin away from zero, which counts as holding, so that its sign shows whether the value holds.
+  // Returns a margin that is never zero: at least 1e-12 in magnitude, positive if the value holds and negative otherwise.
   static double signed_margin(const DesignValue& value) {
     constexpr double k_least = 1e-12;
     if (!value.doubt.empty()) return std::min(std::isnan(value.margin) ? -1.0 : value.margin, -k_least);
@@ -243,7 +245,7 @@ private:
     if (target_)
       for (const double x : xs) known_[x] = index_at(x);
     else run_at(xs);
-    // An unknown margin is replaced by that of a limit exceeded twice, so that the search does not take it for a border.
+    // Replaces an unknown margin by −1, so that the search for zeros does not converge to it.
     constexpr double k_unknown = -1.0, k_least = 1e-6;
     std::vector<double> margins;
     for (const double x : xs) {
@@ -259,7 +261,7 @@ private:
     return values;
   }
 
-  // All limits for certain: one sample for each value.
+  // Runs one sample per value and stores its least limit state. Used without a target reliability.
   void run_at(const std::vector<double>& xs) {
     std::vector<double> points;
     for (const double x : xs) {
@@ -277,8 +279,8 @@ private:
     }
   }
 
-  // With a target: the index of first order, or by sampling where no design point is found; of values of a list, which have no border to be
-  // corrected, the lower end of the interval by sampling.
+  // Returns the reliability index minus the target at x. For a range the index is that of first order, or from sampling if no design point
+  // is found. For a list of values, whose borders are not refined, it is the lower end of the confidence interval from sampling.
   DesignValue index_at(double x) {
     if (!is_list()) {
       IndexEstimate index = search_.first_order(x);
@@ -297,7 +299,7 @@ private:
       for (HoldingEnd* end : {&interval.from, &interval.to}) {
         if (end->is_range_end) continue;
         if (const std::string& doubt = known_.at(end->beyond).doubt; !doubt.empty())
-          continue; // the neighbouring value is unknown, so this is no border
+          continue; // the margin beyond this end is unknown, so the end is not where the index reaches the target
         report("form", "border of first order", end->value);
         const TargetBorder border = search_.border_near(end->value, variable_.range[0], variable_.range[1]);
         report("importance_sampling", "checked at", border.checked_at);
@@ -320,7 +322,7 @@ private:
 
   [[nodiscard]] std::string subject() const { return (variable_.has_distribution() ? "the mean of '" : "'") + variable_.name + "'"; }
   [[nodiscard]] std::string quantity(double x) const { return rounded_quantity(x, variable_.unit, false, digits()); }
-  [[nodiscard]] int digits() const { // one more than the tolerance or the interval has
+  [[nodiscard]] int digits() const { // one digit more than the tolerance of the border determines
     return target_ && !is_list() ? 4 : std::clamp(2 - static_cast<int>(std::floor(std::log10(settings_.tolerance))), 4, 12);
   }
 
@@ -336,7 +338,7 @@ private:
            quantity(known_.rbegin()->first) + ". Nearest is " + quantity(best->first) + ": " + reason_at(best->first);
   }
 
-  // Returns why a value does not hold.
+  // Returns one sentence that says why the limits do not hold at x.
   std::string reason_at(double x) {
     const DesignValue& value = known_.at(x);
     if (!value.doubt.empty()) return value.doubt;
@@ -398,8 +400,8 @@ private:
   const Variable& variable_;
   std::optional<double> target_;
   TargetSearch search_;
-  std::map<double, DesignValue> known_;     ///< all values that were tried
-  std::map<double, std::size_t> governing_; ///< index of the least limit state
+  std::map<double, DesignValue> known_;     ///< results by value of the design variable
+  std::map<double, std::size_t> governing_; ///< index of the least limit state, by value of the design variable
   Answer answer_;
 };
 

@@ -15,16 +15,16 @@ namespace steplap::study {
 
 namespace {
 
-constexpr double k_most_options = 100000; // a list that nobody reads to its end
+constexpr double k_most_options = 100000; // largest number of combinations that may be run
 
-/// One combination of values.
+/// One combination of values of the design variables.
 struct Option {
-  std::vector<double> values; ///< of all variables
+  std::vector<double> values; ///< values of all variables of the study
   double cost = 0.0;
-  double margin = 0.0;  ///< least limit state
-  std::size_t limit{};  ///< its index
-  bool is_open = false; ///< true if it is not known whether the option holds
-  std::string reason{}; ///< why it does not hold, or is open; "" if it holds
+  double margin = 0.0;  ///< least limit state; negative: the limits do not hold
+  std::size_t limit{};  ///< index of the least limit state
+  bool is_open = false; ///< true if it is unknown whether the limits hold
+  std::string reason{}; ///< why the limits do not hold, or why this is unknown; "" if they hold
 
   [[nodiscard]] bool holds() const { return reason.empty(); }
 };
@@ -86,7 +86,7 @@ private:
     else if (option.margin < 0.0) option.reason = "limit state '" + run_.study().limit_states[option.limit].name + "' is negative";
   }
 
-  // A full run tells by how much a limit of a model is exceeded.
+  // Returns the reason why a limit is exceeded, from a complete run of the model, which also gives the amount.
   [[nodiscard]] std::string full_reason(const Option& option) const {
     const StudyModel* model = model_of_limit(run_.loaded, option.limit);
     if (!model || option.is_open) return option.reason;
@@ -117,7 +117,7 @@ private:
                                       : " The next cheaper one, " + values_text(best_[-1]) + ", does not hold: " + full_reason(best_[-1]));
   }
 
-  // An open option that costs less may be the better choice.
+  // Notes the open options that are cheaper than the chosen one, because any of them might be the better choice.
   void add_open_options() {
     const auto open = std::count_if(options_.begin(), best_, [](const Option& o) { return o.is_open; });
     if (open == 0) return;
@@ -143,7 +143,7 @@ private:
 
   StudyRun& run_;
   std::vector<Option> options_;
-  std::vector<Option>::iterator best_; ///< the cheapest that holds, or the end
+  std::vector<Option>::iterator best_; ///< the cheapest option that holds; options_.end() if there is none
   Answer answer_;
   long listed_ = 0;
 };

@@ -1,5 +1,5 @@
-// Least-cost choice among discrete options: all combinations of the values of several design variables are run, and those that hold are listed
-// from the cheapest.
+// Least-cost choice among discrete options: runs all combinations of the listed values of several design variables. Lists the combinations
+// that keep all limits, cheapest first.
 #pragma once
 
 #include "tools/study/study_run.h"
@@ -9,10 +9,11 @@ namespace steplap::study {
 /// Returns true if the study chooses by cost: [design] has a 'cost'.
 [[nodiscard]] bool is_choice(const Study& study);
 
-/// Appends errors of a choice to `problems`: variables without list of values, a cost without value, targets that go with one variable only.
+/// Appends errors of a choice by cost to `problems`: a design variable without a list of values, a cost formula without a value, or a
+/// target reliability, which is possible for a single design variable only.
 void check_choice(const LoadedStudy& loaded, std::vector<Diagnostic>& problems);
 
-/// Runs all options. The answer begins with the cheapest that holds, as a sentence.
+/// Runs all combinations. The first note of the answer is a sentence with the cheapest combination that keeps all limits.
 [[nodiscard]] Answer cheapest_option(StudyRun& run);
 
 } // namespace steplap::study

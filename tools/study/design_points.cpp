@@ -17,7 +17,7 @@ namespace steplap::study {
 
 namespace {
 
-// A run without a result gives no gradient, so the search from this start ends.
+// Thrown if a run has no result. The gradient is then unknown, and the search from this start ends.
 class BadSample : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;
@@ -38,7 +38,7 @@ double g_at(LimitFunction& limit, const OT::Point& u) {
   return value.g;
 }
 
-// Evaluates g and its differences, each in one batch, which uses all processors.
+// The limit function g for OpenTURNS. All points of an evaluation are run in one batch, so that all processors are used.
 class LimitEvaluation : public OT::EvaluationImplementation {
 public:
   explicit LimitEvaluation(LimitFunction& limit) : limit_(&limit) {
@@ -117,7 +117,7 @@ private:
 };
 
 OT::RandomVector event_of(LimitFunction& limit, double h) {
-  // Second differences use a larger step, because their noise is inversely proportional to its square.
+  // Second differences use a larger step h, because their noise is proportional to 1/h².
   const OT::Function function{OT::Evaluation(OT::Pointer<OT::EvaluationImplementation>(new LimitEvaluation(limit))),
                               OT::Gradient(OT::Pointer<OT::GradientImplementation>(new LimitGradient(limit, h))),
                               OT::Hessian(OT::Pointer<OT::HessianImplementation>(new LimitHessian(limit, std::max(10.0 * h, 1e-3))))};
@@ -125,7 +125,7 @@ OT::RandomVector event_of(LimitFunction& limit, double h) {
   return OT::ThresholdEvent(OT::CompositeRandomVector(function, input), OT::Less(), 0.0);
 }
 
-// Checks whether the end of a search satisfies the conditions of a design point.
+// Checks whether a search ended at a design point: on the surface g = 0, with u parallel to the gradient.
 DesignPoint point_of(LimitFunction& limit, const SearchEnd& end, bool is_origin_failing) {
   constexpr double k_on_surface = 1e-4, k_aligned = 1e-4;
   DesignPoint point;
@@ -164,7 +164,7 @@ void add_second_order(LimitFunction& limit, const OT::OptimizationAlgorithm& sea
     try {
       point.hohenbichler = result.getEventProbabilityHohenbichler();
       point.tvedt = result.getEventProbabilityTvedt();
-    } catch (const OT::Exception&) { // curvatures too large for these formulas
+    } catch (const OT::Exception&) { // the curvatures are outside the domain of these formulas
     }
   } catch (const OT::Exception&) {
   } catch (const BadSample&) {}
@@ -197,7 +197,8 @@ bool add_point(DesignPoint point, std::vector<DesignPoint>& points) {
 // Runs one search until sample number `last`; records the reason if it ends early. Returns true if it found a new point.
 bool search_from(LimitFunction& limit, const std::vector<double>& start, long last, DesignPoints& found) {
   ++found.starts;
-  constexpr double k_near_surface = 1e-2; // relative distance; near it another search would oscillate as well
+  // searches that failed closer than this to the surface, relative, are treated as known: other starts would oscillate there, too
+  constexpr double k_near_surface = 1e-2;
   std::vector<std::vector<double>> known;
   for (const DesignPoint& p : found.points)
     if (p.is_found || p.off_surface < k_near_surface) known.push_back(p.u);
@@ -213,7 +214,8 @@ void sort_points(std::vector<DesignPoint>& points) {
   });
 }
 
-// Returns the budget for all searches together: a search takes about five steps with a gradient each, and most end at known points.
+// Returns the largest number of samples for all searches together. A search takes about five steps with one gradient each, and most
+// searches end at known points.
 long budget_of(const LimitFunction& limit) {
   return limit.settings().search_samples.value_or(300 + 50 * static_cast<long>(limit.dimension()));
 }
@@ -231,7 +233,7 @@ std::vector<std::vector<double>> spread_directions(const LimitFunction& limit, l
     for (double& x : a) x /= length;
     pool.push_back(std::move(a));
   }
-  std::vector<double> nearest(pool.size(), -1.0); // largest cosine to the chosen directions
+  std::vector<double> nearest(pool.size(), -1.0); // largest cosine of the angle to a chosen direction
   for (std::size_t next = 0; static_cast<long>(directions.size()) < count;) {
     directions.push_back(pool[next]);
     for (std::size_t i = 0; i < pool.size(); ++i) nearest[i] = std::max(nearest[i], cosine_between(pool[i], directions.back()));

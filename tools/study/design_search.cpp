@@ -10,8 +10,9 @@ namespace steplap::study {
 namespace {
 
 constexpr int k_most_steps = 30, k_most_halvings = 8;
-constexpr double k_arrived = 1e-5; // step relative to the distance; the error of beta is of second order in it
-constexpr double k_known = 0.1;    // distance to a known point that ends the search, relative
+// the search has converged if the step is shorter than this, relative to |u|; the error of beta is quadratic in it
+constexpr double k_arrived = 1e-5;
+constexpr double k_known = 0.1; // the search ends at this distance from a known design point, relative to |u|
 
 double product(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
@@ -75,7 +76,7 @@ private:
     return ended("a run without result lay on the way");
   }
 
-  // Returns true if the search has been on the surface for some steps without coming closer to the origin: it then oscillates between
+  // Returns true if four consecutive steps stayed on the surface without approaching the origin. The search then oscillates between the
   // gradients on both sides of an edge.
   bool stands_still() {
     constexpr double k_still = 1e-4;

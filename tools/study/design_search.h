@@ -12,14 +12,14 @@
 
 namespace steplap::study {
 
-/// End of a search.
+/// Result of a search.
 struct SearchEnd {
-  std::vector<double> u;        ///< last point
-  std::vector<double> gradient; ///< gradient at u
-  double g = 0.0;               ///< value at u
-  bool is_known = false;        ///< true if the search was approaching a known point
+  std::vector<double> u;        ///< last point in standard normal space
+  std::vector<double> gradient; ///< gradient of g at u
+  double g = 0.0;               ///< value of g at u
+  bool is_known = false;        ///< true if the search ended because it approached a known design point
   bool is_bad = false;          ///< true if a run without a result ended the search
-  std::string trouble;          ///< reason if it did not converge; "" otherwise
+  std::string trouble;          ///< reason why the search did not converge; "" if it did
 };
 
 /// Searches from `start`. Ends early if it approaches one of `known`, or when the samples taken from `limit` reach number `last`.

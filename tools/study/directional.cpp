@@ -20,7 +20,7 @@ namespace {
 enum class RayState { holds, fails, bad };
 
 struct RayPoint {
-  double at = 0.0, g = 0.0; // radius and value
+  double at = 0.0, g = 0.0; // distance from the origin; limit function
   RayState state = RayState::holds;
 };
 
@@ -30,17 +30,18 @@ RayPoint ray_point_at(double at, const LimitValue& value) {
 
 struct Stratum {
   std::size_t ray;
-  double low, high;           // radii; infinity at the end of a ray
-  double tail_low, tail_high; // probability of a larger radius
+  double low, high;           // distances from the origin; `high` is infinite in the last stratum
+  double tail_low, tail_high; // probability of a distance larger than `low` and than `high`
   bool is_last = false;
   RayPoint own{};
-  RayPoint beside[4]{}; // points outside the stratum and outside the whole from which it was divided: two before, two after
+  RayPoint beside[4]{}; // two points before and two after the stratum, outside the stratum that was divided to obtain it
 
   [[nodiscard]] double probability() const { return tail_low - tail_high; }
 
-  // Returns true if the stratum is to be divided. Uses the neighbouring points only.
+  // Returns true if the stratum must be divided. The decision uses neighbouring points only, which keeps the estimate unbiased.
   [[nodiscard]] bool is_to_cut() const {
-    constexpr double k_fine = 0.1; // of the probability outside the stratum; rays differ by more than this
+    // no division below this fraction of the probability of larger distances; it is less than the scatter between rays
+    constexpr double k_fine = 0.1;
     if (is_last || probability() <= k_fine * tail_low) return false;
     return beside[1].state != beside[2].state || comes_to_zero(beside[0], beside[1]) || comes_to_zero(beside[3], beside[2]);
   }
@@ -53,12 +54,12 @@ private:
   }
 };
 
-// Several rays at a time, which uses all processors.
+// Evaluates several rays in one batch, so that all processors are used.
 class Rays {
 public:
   Rays(LimitFunction& limit, const CounterRandom& random, std::uint64_t first, std::size_t count, const RayPoint& origin)
       : limit_(limit), random_(random), first_(first), n_(limit.dimension()), draws_(count, 0) {
-    constexpr double k_beyond = 1e-16; // probability left for the last stratum
+    constexpr double k_beyond = 1e-16; // probability of the last stratum, which extends to infinity
     const double reach = std::sqrt(2.0 * OT::DistFunc::qGamma(0.5 * static_cast<double>(n_), k_beyond, true));
     for (std::size_t i = 0; i < count; ++i) {
       add_direction(i);
@@ -105,7 +106,7 @@ private:
     s.tail_high = s.is_last ? 0.0 : beyond(s.high);
   }
 
-  // Draws a point in the stratum from the density of the distance.
+  // Draws a random point in the stratum from the distribution of the distance.
   void place(Stratum& s) {
     const double share = random_.uniform(first_ + s.ray, static_cast<std::uint32_t>(n_) + draws_[s.ray]++);
     const double tail = s.tail_high + share * s.probability();
@@ -125,10 +126,11 @@ private:
     }
   }
 
-  // Divides strata into three. The existing point is reused for the part that contains it.
+  // Divides strata into three equal parts where needed. Returns true if any was divided. The part that contains the existing point keeps
+  // it.
   bool refine() {
     std::vector<Stratum> next, fresh;
-    std::vector<std::size_t> places, cuts; // new points; first of the three parts
+    std::vector<std::size_t> places, cuts; // indices of parts that need a new point; index of the first part of each divided stratum
     for (const Stratum& s : strata_) {
       if (!s.is_to_cut()) {
         next.push_back(s);
@@ -157,7 +159,7 @@ private:
     return true;
   }
 
-  // Sets the neighbours of three parts: each other, and those of the whole.
+  // Sets the neighbouring points of three parts: the points of the other parts, then the neighbours of the divided stratum.
   static void set_beside(Stratum* part) {
     const RayPoint *const outside = part[0].beside,
                           seen[] = {outside[0], outside[1], part[0].own, part[1].own, part[2].own, outside[2], outside[3]};
@@ -169,14 +171,14 @@ private:
     }
   }
 
-  static constexpr std::size_t k_strata = 16; // of a ray, initially
+  static constexpr std::size_t k_strata = 16; // number of strata of a ray before any division
   static constexpr int k_parts = 3;
   LimitFunction& limit_;
   const CounterRandom& random_;
   std::uint64_t first_;
   std::size_t n_;
   std::vector<double> directions_;
-  std::vector<std::uint32_t> draws_; // random numbers used by each ray
+  std::vector<std::uint32_t> draws_; // number of random numbers used by each ray
   std::vector<Stratum> strata_;
   long bad_ = 0;
 };
@@ -184,7 +186,7 @@ private:
 } // namespace
 
 Estimate directional(LimitFunction& limit, const SamplingTarget& target) {
-  constexpr std::size_t k_rays = 32; // evaluated together
+  constexpr std::size_t k_rays = 32; // number of rays evaluated in one batch
   constexpr long k_first = 64;       // rays in the first stage, and minimum for the second
   const CounterRandom random(static_cast<std::uint64_t>(limit.run().study().seed), 5);
   SamplingCourse course(limit, target);
@@ -205,7 +207,7 @@ Estimate directional(LimitFunction& limit, const SamplingTarget& target) {
     }
   };
   draw_until(k_first);
-  if (!course.is_over()) { // the first stage, whose rays are not counted, determines the number of rays
+  if (!course.is_over()) { // the first stage determines the number of rays of the second and is then discarded
     const long second = std::max(course.planned(safe.count(), e.cov), k_first);
     safe = unsafe = {};
     e.bad = 0;

@@ -50,12 +50,12 @@ const char* unpack(const char* bytes, Outcome& o) {
   return bytes;
 }
 
-// Returns true if two values are the same for a store, which does not distinguish −0 and 0.
+// Returns true if both values are equal or both NaN. −0 equals 0, because the store does not distinguish them.
 bool is_same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 } // namespace
 
-// Worker threads, each with its own scene.
+// One simulator per thread.
 class Workers {
 public:
   Workers(const LoadedStudy& loaded, int threads) : width_(loaded.study.variables.size()), has_models_(!loaded.models.empty()) {
@@ -63,12 +63,12 @@ public:
     for (int i = 0; i < count; ++i) scenes_.push_back(std::make_unique<SampleSimulator>(loaded));
   }
 
-  /// Runs every `stride`-th point from `first` on.
+  /// Runs the points first, first + stride, first + 2 stride, …, on all threads.
   void run(const double* points, std::size_t count, std::size_t first, std::size_t stride,
            const std::function<Outcome&(std::size_t)>& outcome) {
     const long mine = first < count ? static_cast<long>((count - first + stride - 1) / stride) : 0;
     const int block = has_models_ ? 1 : 256;
-    const bool is_worth_it = has_models_ ? mine > 1 : mine > 2000; // a formula takes a microsecond, starting threads takes several
+    const bool is_worth_it = has_models_ ? mine > 1 : mine > 2000; // starting threads takes several microseconds, a formula one
 #pragma omp parallel for schedule(dynamic, block) num_threads(static_cast<int>(scenes_.size())) if (is_worth_it)
     for (long i = 0; i < mine; ++i) {
       const std::size_t k = first + static_cast<std::size_t>(i) * stride;
@@ -100,7 +100,7 @@ void Evaluator::fetch(std::size_t from, std::size_t count, const std::vector<dou
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < width; ++j)
       if (!is_same(fetched_[i].values[j],
-                   points[(from + i) * width + j])) { // the sequence of a changed study differs from here on
+                   points[(from + i) * width + j])) { // the stored samples of a changed study differ from here on
         if (!may_go_another_way(store))
           throw StoreError(store.path(),
                            "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
@@ -120,7 +120,7 @@ void Evaluator::fetch(std::size_t from, std::size_t count, const std::vector<dou
   }
 }
 
-// A study that ends by the clock requests a different number of samples each time.
+// Returns true if the samples requested may differ from the stored ones without an error: the study was changed, or a time limit ends it.
 bool Evaluator::may_go_another_way(Store& store) const { return store.may_hold_others() || loaded_.study.settings->ends_by_clock(); }
 
 void Evaluator::run(std::size_t from, std::size_t count, const std::vector<double>& points) {
@@ -155,7 +155,7 @@ void Evaluator::check(const StoredSample& sample) const {
 
 // Batches take about half a second, which limits the loss at an interruption. Stored data do not depend on the batch size.
 const std::vector<StoredSample>& Evaluator::evaluate(const std::vector<double>& points) {
-  constexpr double k_batch = 0.5; // s
+  constexpr double k_batch = 0.5; // target duration of a batch, s
   const std::size_t width = loaded_.study.variables.size(), count = width ? points.size() / width : 0;
   rows_.resize(count);
   for (std::size_t from = 0; from < count;) {

@@ -21,12 +21,12 @@ public:
 
 /// Progress of a study.
 struct Pace {
-  long samples = 0, stored = 0; ///< requested so far; of these, found in the store
+  long samples = 0, stored = 0; ///< samples requested so far, and how many of them the store contained
   double seconds = 0.0;
   double rate = 0.0;     ///< samples per second, recently
-  std::string estimate;  ///< latest estimate
+  std::string estimate;  ///< latest estimate as a text
   long expected = 0;     ///< number of samples at the end of the current method; 0: unknown
-  bool is_guess = false; ///< true if `expected` is extrapolated from an estimate
+  bool is_guess = false; ///< true if `expected` is an extrapolation from the scatter of the estimate
 };
 
 class Workers;
@@ -41,14 +41,14 @@ public:
   const std::vector<StoredSample>& evaluate(const std::vector<double>& points);
   /// Returns the number of samples requested so far.
   [[nodiscard]] long asked() const { return next_ - 1; }
-  /// Returns the store after all requested samples have been written.
+  /// Waits until all requested samples are written and returns the store.
   [[nodiscard]] Store& store() { return writer_.store(); }
-  /// Stores an intermediate estimate and shows it.
+  /// Stores an intermediate estimate and reports it to `progress`.
   void note(const Finding& finding);
   /// Sets the number of samples still to come, for the prediction of the remaining time; 0: unknown. `is_guess`: extrapolated from an
   /// estimate.
   void expect(long more, bool is_guess = false);
-  /// Returns the seconds since this call of the program started the study.
+  /// Returns the time since the study was started or continued, s.
   [[nodiscard]] double seconds() const;
 
   /// Called on ranks other than 0: runs the samples that rank 0 requests until dismiss().
@@ -64,7 +64,7 @@ private:
 
   const LoadedStudy& loaded_;
   StoreWriter writer_;
-  long stored_; ///< samples in the store or queued for writing
+  long stored_; ///< samples in the store, including those still queued for writing
   const Ranks& ranks_;
   std::unique_ptr<Workers> workers_;
   std::function<void(const Pace&)> progress_;

@@ -13,15 +13,15 @@ namespace steplap::study {
 
 namespace {
 
-/// Whether something happened in a sample. Runs without a result leave it unknown.
+/// Outcome of a statement about one sample. It is unknown for a run without a result.
 enum class Truth { no, yes, unknown };
 
-/// One load of the past, with indices instead of names.
+/// One past load ([[evidence]]), with indices instead of names.
 struct Load {
   LimitSystem system;
   bool is_held;
-  std::vector<std::size_t> anew;              ///< coordinates of standard normal space
-  std::vector<std::pair<int, double>> values; ///< index of the variable, value
+  std::vector<std::size_t> anew;              ///< coordinates of standard normal space that are drawn independently for this load
+  std::vector<std::pair<int, double>> values; ///< variables with a fixed value in this load: index, value
 
   [[nodiscard]] Truth agrees(const Outcome& outcome) const {
     const LimitValue value = system.value_of(outcome);
@@ -68,7 +68,7 @@ public:
   }
 
   void add_to(Answer& answer) {
-    // The number of samples doubles from look to look, so that few looks decide when sampling ends.
+    // The end criterion is checked only each time the number of samples has doubled. Frequent checks would bias the estimate.
     constexpr long k_first = 500;
     for (long count = k_first; !course_.is_over() && !is_enough(); count *= 2) draw_until(count);
     course_.say_why_it_ended(e_);
@@ -113,7 +113,7 @@ private:
 
   static bool is_plain(std::uint64_t sample) { return sample % 2 == 0; }
 
-  // Appends the values of the variables in the coming load and in those of the past.
+  // Appends the values of all variables for the coming load, then for each past load.
   void append_sample(std::uint64_t sample) {
     const std::size_t n = limit_.dimension();
     std::vector<double> u;
@@ -149,7 +149,8 @@ private:
     return all;
   }
 
-  // A sample of which something is unknown counts as a failure in the upper bound and as none in the lower one.
+  // Adds a sample. If failure or agreement with the evidence is unknown, it increases the upper bound of the probability and decreases the
+  // lower bound.
   void add(std::uint64_t sample, double w, Truth fails, Truth agrees, const std::vector<double>& values) {
     e_.bad += fails == Truth::unknown || agrees == Truth::unknown;
     prior_.add(w, fails == Truth::yes);
@@ -159,7 +160,7 @@ private:
     if (agrees == Truth::yes || (agrees == Truth::unknown && is_unsafe)) unsafe_.add(w, is_unsafe);
     if (agrees != Truth::yes) return;
     for (std::size_t d = 0; d < moments_.size(); ++d) moments_[d].add(w, values[run_.law.random()[d]]);
-    constexpr std::size_t k_most = 1000; // enough to fit a distribution to
+    constexpr std::size_t k_most = 1000; // sufficient to fit a distribution
     if (is_plain(sample) && kept_.size() < k_most) kept_.push_back(values);
   }
 
@@ -193,7 +194,7 @@ private:
     put(answer, limit_.subject(), "effective samples", safe_.effective());
   }
 
-  // Variables that all loads draw anew or set have the same distribution as without evidence.
+  // Returns the coordinates about which the evidence gives information: those that keep their values in at least one past load.
   [[nodiscard]] std::vector<std::size_t> lasting_coordinates() const {
     std::vector<std::size_t> lasting;
     for (std::size_t d = 0; d < limit_.dimension(); ++d) {
@@ -215,7 +216,8 @@ private:
     }
   }
 
-  // Samples drawn from the distributions of the variables that agree with the evidence: all of the same weight.
+  // Adds the samples that agree with the evidence as findings. Only samples drawn from the distributions themselves are used, so all have
+  // equal weight.
   void add_samples(Answer& answer) {
     const std::vector<std::size_t> lasting = lasting_coordinates();
     for (std::size_t k = 0; k < kept_.size(); ++k)
@@ -234,8 +236,8 @@ private:
            text(interval.low) + " to " + text(interval.high) + "). Without it is " + text(prior_.mean()) + ".";
   }
 
-  // Below these effective numbers of samples the intervals of ratios are not reliable: the denominator scatters by a tenth, the numerator by
-  // a fifth.
+  // Smallest effective numbers of samples in agreement with the evidence and of failures among them. With fewer, a ratio's denominator
+  // scatters by more than 10 % or its numerator by more than 20 %, and its interval is not reliable.
   static constexpr double k_fewest = 100.0, k_fewest_failures = 25.0;
   static constexpr std::uint32_t k_stream = 12;
   static constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
@@ -245,11 +247,11 @@ private:
   const SamplingTarget& target_;
   SamplingCourse course_;
   CounterRandom random_;
-  std::optional<Proposal> proposal_; ///< nothing if no design point was found
+  std::optional<Proposal> proposal_; ///< empty if no design point was found
   std::vector<Load> loads_;
   Estimate e_;
   WeightedFraction prior_, evidence_, safe_, unsafe_;
-  std::vector<Moments> moments_; ///< per random variable
+  std::vector<Moments> moments_; ///< one entry per random variable
   std::vector<std::vector<double>> kept_;
   std::vector<double> values_, weights_;
   long drawn_ = 0;
@@ -269,7 +271,8 @@ std::vector<std::string> names_of(const Study& study) {
   return names;
 }
 
-// A value that stays, one that is drawn anew and one that is set are independent of each other in past loads.
+// Reports an error for correlated variables of which one is drawn independently or fixed in past loads and the other is not: the
+// correlation could not hold there.
 void check_correlations(const Study& study, const Evidence& e, std::vector<Diagnostic>& problems) {
   const auto group = [&](const std::string& name) { return contains(e.anew, name) ? 1 : is_set(e, study.index_of_variable(name)) ? 2 : 0; };
   for (const Correlation& c : study.correlations)

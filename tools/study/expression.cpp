@@ -12,7 +12,7 @@ namespace {
 
 std::vector<std::string> function_names() {
   std::vector<std::string> names;
-  const mu::Parser parser; // must outlive the loop
+  const mu::Parser parser; // a named object, because the loop refers to its data
   for (const auto& [name, function] : parser.GetFunDef()) names.push_back(name);
   return names;
 }

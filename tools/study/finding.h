@@ -10,13 +10,13 @@ namespace steplap::study {
 
 /// A number found by a study, with its confidence interval, if there is one, and its status.
 struct Finding {
-  std::string method;   ///< "monte_carlo", "form", ...
+  std::string method;   ///< method by which it was computed: "monte_carlo", "form", …
   std::string subject;  ///< variable, response or limit state to which it refers
   std::string quantity; ///< "probability", "beta", "first order", ...
   double value = std::numeric_limits<double>::quiet_NaN();
   double low = std::numeric_limits<double>::quiet_NaN(), high = std::numeric_limits<double>::quiet_NaN();
-  long samples = 0;     ///< number of samples used
-  std::string status{}; ///< "" if valid; otherwise a remark on its reliability
+  long samples = 0;     ///< number of samples from which it was computed
+  std::string status{}; ///< "" if valid; otherwise the reason why it is not reliable
 };
 
 /// Reliability of an answer.

@@ -7,16 +7,16 @@
 
 namespace steplap::study {
 
-/// Unit of a finding.
+/// Source of a finding's unit.
 enum class UnitOf {
   none,
   subject, ///< unit of the finding's subject, which must be a column of the samples or a measured record
   quotient ///< that unit divided by the unit of the variable named in the quantity
 };
 
-/// Presentation of findings with a certain quantity.
+/// How the page presents findings whose quantity has the text `quantity`.
 struct FindingPart {
-  std::string role;     ///< presentation on the page
+  std::string role;     ///< role of the finding on the page: probability, beta, border, …
   std::string quantity; ///< text of the quantity: a prefix followed by a variable's name if it ends with a blank; a suffix if it begins
                         ///< with a blank
   UnitOf unit = UnitOf::none;

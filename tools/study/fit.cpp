@@ -144,8 +144,9 @@ std::vector<LeastSquaresMinimum> search(StudyRun& run, const FitProblem& fit) {
   return minima;
 }
 
-// Returns another basis of the same space in which each vector contains as few parameters as possible (Gauss-Jordan elimination on
-// columns). Undetermined combinations have no natural order, and any mixture of them is also undetermined.
+// Returns another basis of the space spanned by the columns of `ways`, in which each vector has as few non-zero components as possible
+// (Gauss-Jordan elimination on columns). Any basis of the undetermined combinations of parameters is equivalent; this one is the easiest to
+// read.
 Eigen::MatrixXd plainest(Eigen::MatrixXd ways) {
   for (Eigen::Index k = 0; k < ways.cols(); ++k) {
     Eigen::Index row = 0, column = 0;
@@ -205,7 +206,7 @@ private:
     answer_.degrade(Standing::not_trusted);
   }
   [[nodiscard]] double deviation(Eigen::Index i) const { return std::sqrt(told_.covariance(i, i)); }
-  // Returns true if the record does not determine this direction.
+  // Returns true if parameter i is part of a combination that the records do not determine.
   [[nodiscard]] bool is_untold(Eigen::Index i) const {
     constexpr double k_share = 0.05;
     for (Eigen::Index k = told_.rank; k < fit_.size(); ++k)
@@ -213,7 +214,8 @@ private:
     return false;
   }
 
-  // Evaluates the sum of squares at both ends of the interval along each direction, to check the linearisation.
+  // Evaluates the sum of squares at both ends of the confidence interval along each determined direction. Parameters for which it differs
+  // from the linearised value by more than a factor of 2 get a remark.
   void check_ends_of_intervals() {
     std::vector<VectorXd> points;
     for (int k = 0; k < told_.rank; ++k)
@@ -226,7 +228,7 @@ private:
     for (std::size_t j = 0; j < points.size(); ++j) {
       const VectorXd way = points[j] - best_.at;
       const double expected = (best_.jacobian * way).squaredNorm() + 2.0 * (best_.jacobian * way).dot(best_.residuals);
-      // Rounding of the runs alone causes a sum of squares.
+      // A rise that is small relative to the sum, or close to the numerical error of the runs, cannot be compared.
       if (!(expected > 1e-6 * best_.sum) || expected < 100.0 * fit_.problem().floor) continue;
       const double rise = rows[j].size() > 0 ? (rows[j].squaredNorm() - best_.sum) / expected : std::nan("");
       if (rise > 0.5 && rise < 2.0) continue;
@@ -304,7 +306,7 @@ private:
 
   // Tests the residuals: if they exceed the noise or are correlated, the model does not describe the measurement.
   void add_residuals() {
-    constexpr double k_sure = 4.0; // standard deviations; one case in 16 000
+    constexpr double k_sure = 4.0; // standard deviations; exceeded by chance in one of 16 000 cases
     Eigen::Index place = 0;
     for (const History& h : run_.study().histories) {
       const auto count = static_cast<Eigen::Index>(h.t.size());
@@ -331,8 +333,8 @@ private:
     }
   }
 
-  // Checks the sampling: linear interpolation between samples of a run has an error of an eighth of the second difference, which is
-  // proportional to the square of the step.
+  // Warns if linear interpolation between output samples is too coarse. Its error is at most 1/8 of the second difference, which is
+  // proportional to the square of the output step.
   void check_interpolation(const History& h, Eigen::Index place) {
     const auto model =
         std::find_if(run_.loaded.models.begin(), run_.loaded.models.end(), [&](const auto& m) { return m->name == h.model; });
@@ -390,7 +392,7 @@ private:
   Answer answer_;
   Identified told_;
   double freedom_ = 1.0, variance_ = 1.0, quantile_ = 2.0;
-  std::vector<std::string> off_; ///< per parameter: problem with its interval
+  std::vector<std::string> off_; ///< per parameter: remark on its interval; "" if valid
 };
 
 void check_fit(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
@@ -441,8 +443,8 @@ StudyKind fit_kind() {
   kind.takes_histories = true;
   kind.parts = {{"base", "value", UnitOf::subject},
                 {"moment", "standard deviation", UnitOf::subject, 4},
-                {"residual", "residual", UnitOf::subject, 4}, // unit of a measured record
-                {"sum of squares", "sum of squares"},         // of residuals divided by their noise
+                {"residual", "residual", UnitOf::subject, 4}, // quantity in the unit of a measured record
+                {"sum of squares", "sum of squares"},         // dimensionless: residuals are divided by the noise
                 {"correlation", "correlation", UnitOf::none, 3},
                 {"condition", "condition", UnitOf::none, 3},
                 {"not determined", "not determined", UnitOf::none, 3},

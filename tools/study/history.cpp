@@ -91,18 +91,18 @@ Sampling sampling_of(const Study& study, const StudyModel& model) {
   for (const History& h : study.histories)
     if (h.model == model.name) times.insert(times.end(), h.t.begin(), h.t.end());
   if (times.empty()) return {};
-  constexpr double k_off = 1e-6; // of the step; rounding of times in a file
+  constexpr double k_off = 1e-6; // tolerance for rounded times in a file, relative to the step
   std::sort(times.begin(), times.end());
   double gap = std::numeric_limits<double>::infinity(), last = 0.0;
   for (const double t : times) {
     if (t - last > 1e-12 * times.back()) gap = std::min(gap, t - last);
     last = t;
   }
-  if (!std::isfinite(gap)) return {model.given.simulation.end, true}; // measured at the start only
-  constexpr double k_most = 1e6;                                      // samples of a run
+  if (!std::isfinite(gap)) return {model.given.simulation.end, true}; // all measured times are zero
+  constexpr double k_most = 1e6;                                      // largest number of output samples of a run
   for (int parts = 1; parts <= 20 && times.back() * parts < k_most * gap; ++parts) {
     const double step = gap / parts;
-    // The step computed from the whole record is more accurate than a single interval.
+    // The last time divided by the number of steps is more accurate than a single interval.
     const double fine = times.back() / std::round(times.back() / step);
     if (std::all_of(times.begin(), times.end(), [&](double t) { return std::abs(t / fine - std::round(t / fine)) < k_off; }))
       return {fine, true};

@@ -12,7 +12,7 @@ namespace steplap::study {
 namespace {
 
 double wanted_width(const Crossing& c, double tolerance, double range) {
-  constexpr double k_floor = 1e-6; // of the range: a border at zero has no relative tolerance
+  constexpr double k_floor = 1e-6; // relative to the range: smallest magnitude for the relative tolerance, needed for a border at zero
   return tolerance * std::max({std::abs(c.low), std::abs(c.high), k_floor * range});
 }
 
@@ -40,7 +40,7 @@ std::vector<Crossing> closed_crossings(const LineFunction& function, const LineS
     if ((samples.g[i - 1] < 0.0) != (samples.g[i] < 0.0))
       crossings.push_back({samples.x[i - 1], samples.x[i], samples.g[i - 1], samples.g[i]});
   const double range = samples.x.back() - samples.x.front();
-  constexpr int k_most = 8; // each pass knows the values, and with them the tolerance, better
+  constexpr int k_most = 8; // passes; the tolerance is relative to the border's value, which each pass refines
   for (int pass = 0; pass < k_most; ++pass) {
     double width = range;
     bool is_wide = false;
@@ -57,7 +57,7 @@ std::vector<Crossing> closed_crossings(const LineFunction& function, const LineS
 std::vector<HoldingInterval> holding_intervals(const LineSamples& samples, const std::vector<Crossing>& crossings) {
   std::vector<HoldingInterval> intervals;
   const std::size_t count = samples.x.size();
-  std::size_t next = 0; // crossing
+  std::size_t next = 0; // index of the next crossing
   const auto end_at = [&](std::size_t inside, std::size_t outside) {
     if (crossings.empty()) return HoldingEnd{samples.x[inside], samples.x[inside], samples.x[inside], false, samples.x[outside]};
     const Crossing& c = crossings[next++];
@@ -75,7 +75,7 @@ std::vector<HoldingInterval> holding_intervals(const LineSamples& samples, const
 }
 
 std::string rounded_quantity(double value, const std::string& unit, bool is_up, int digits) {
-  constexpr double k_exact = 1e-6; // of the last digit: a value that is this near to a round one is meant to be that
+  constexpr double k_exact = 1e-6; // a value this close to a round one, relative to the last digit, is not rounded to the next
   const std::string known = unit == "*" ? "" : unit;
   const UnitPrefix prefix = prefix_for(value, known);
   const double scaled = value * std::pow(10.0, prefix.exponent);

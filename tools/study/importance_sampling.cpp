@@ -7,7 +7,7 @@ namespace steplap::study {
 
 namespace {
 
-// Weights of failing and of surviving samples. Runs without a result belong to both or to neither.
+// Sums over the weights of failing and of surviving samples. Runs without a result are counted in `…_or_bad` only.
 struct Sums {
   WeightedMean fails, fails_or_bad, holds, holds_or_bad;
   void add(const LimitValue& value, double w) {
@@ -36,18 +36,18 @@ public:
   }
 
 private:
-  // The first stage ends when it finds no further centres.
+  // Runs the first stage, repeated while it finds further centres, and then the second stage, which gives the estimate.
   void run_stages() {
-    // A tenth of the samples, within bounds: fewer do not show the scatter, more are expensive.
+    // 10 % of the samples: fewer than 100 do not show the scatter, more than 300 take too long.
     const long first = std::clamp(target_.samples / 10, 100L, 300L);
     do {
       begin();
       draw_until(first);
     } while (!course_.is_over() && (finds_from_stray() || finds_from_heaviest()));
-    if (course_.is_over()) return; // only the first stage is possible
+    if (course_.is_over()) return; // no sample is left for the second stage
     is_complement_ = holds_better();
     set();
-    // With fewer samples the interval is of little use, whatever accuracy was requested.
+    // Smallest number of samples in the second stage. With fewer, the confidence interval is too wide to be useful.
     constexpr long k_fewest = 300;
     const long second = std::max(course_.planned(first, e_.cov), k_fewest);
     begin();
@@ -66,7 +66,7 @@ private:
   }
 
   void draw_until(long count) {
-    constexpr std::size_t k_most = 1000; // between checks of the clock
+    constexpr std::size_t k_most = 1000; // largest number of samples between checks of the time limit
     const std::size_t n = limit_.dimension();
     while (sums_.fails.count() < count && !course_.is_over()) {
       const std::size_t block = std::min({std::min(course_.block(), k_most), static_cast<std::size_t>(count - sums_.fails.count()),
@@ -85,7 +85,7 @@ private:
     }
   }
 
-  // Keeps the stray failure closest to the origin and the failure with the largest weight.
+  // Remembers the failure nearest to the origin that only the wide component could sample, and the failure with the largest weight.
   void remember(const double* u, std::size_t n, double w) {
     if (w > heaviest_) {
       heaviest_ = w;
@@ -97,7 +97,8 @@ private:
     stray_.assign(u, u + n);
   }
 
-  // Starts a search at the closest stray failure. Returns true if it found a new design point, which the samples drawn before do not cover.
+  // Starts a search at the remembered failure of the wide component. Returns true if a new design point was found; the samples drawn so far
+  // do not cover its surroundings.
   bool finds_from_stray() {
     if (stray_.empty() || searches_++ >= k_most_searches) return false;
     const std::vector<double> start = std::move(stray_);
@@ -105,10 +106,10 @@ private:
     return search_again(limit_, start, design_);
   }
 
-  // Handles a failure whose weight is many times larger than usual, which is in a region with too few samples. Searches a design point near
-  // it; if none is found, the failure itself becomes a centre. Returns true if there is a new centre.
+  // Checks whether one failure has much more weight than the mean, which indicates a region with too few samples. Searches a design point
+  // from it, or makes it a centre if the search fails. Returns true if there is a new centre.
   bool finds_from_heaviest() {
-    constexpr double k_many = 15.0; // ratio; a plane at distance 5 gives 6
+    constexpr double k_many = 15.0; // ratio of the largest weight to the mean; for a plane limit state at distance 5 it is about 6
     const double hits = static_cast<double>(sums_.fails.hits()),
                  mean = sums_.fails.mean() * static_cast<double>(sums_.fails.count()) / std::max(hits, 1.0);
     if (hits < 10.0 || heaviest_ < k_many * mean || searches_++ >= k_most_searches) return false;
@@ -117,8 +118,8 @@ private:
     return true;
   }
 
-  // Returns true if the probability of survival is better known than that of failure. Both must have occurred often enough to estimate
-  // their scatter.
+  // Returns true if the probability of survival has the smaller standard deviation. Both outcomes must have occurred often enough for an
+  // estimate of their scatter.
   [[nodiscard]] bool holds_better() const {
     constexpr long k_enough = 20;
     return std::min(sums_.holds.hits(), sums_.fails.hits()) >= k_enough && sums_.holds.deviation() < sums_.fails.deviation();

@@ -24,7 +24,7 @@ namespace steplap::study {
 
 struct JointLaw::Marginal {
   OT::Distribution distribution;
-  // Distributions that are closed-form functions of z need no inversion.
+  // Normal and lognormal distributions have a closed form in z; general ones are inverted numerically.
   enum class Form { general, normal, lognormal } form = Form::general;
   double a = 0.0, b = 1.0, location = 0.0;
 
@@ -66,7 +66,7 @@ void check_fields(const Variable& v) {
   struct FieldUse {
     const char* name;
     bool is_given;
-    const char* of; ///< distributions that use it
+    const char* of; ///< names of the distributions that use this field
   };
   const FieldUse all[] = {{"mean", v.mean.has_value(), "normal lognormal uniform weibull gumbel beta exponential"},
                           {"standard_deviation", v.standard_deviation.has_value(), "normal lognormal uniform weibull gumbel beta"},
@@ -141,11 +141,11 @@ OT::Distribution by_parameters(const Variable& v) {
 
 struct Described {
   OT::Distribution distribution;
-  std::string fit; ///< for a measured variable
+  std::string fit; ///< text about the fit; "" if the distribution was not fitted
   bool is_misfit = false;
 };
 
-// Explains why parameters that are individually valid define no distribution.
+// Returns the reason why individually valid parameters define no distribution.
 std::string why_there_is_none(const Variable& v) {
   if (!v.measured.empty())
     return "no " + v.distribution + " distribution fits the values of '" + v.measured +
@@ -175,7 +175,7 @@ Described distribution_of(const Variable& v) {
     return {law.distribution, law.text, law.is_misfit};
   } catch (const ModelError&) {
     throw;
-  } catch (const std::exception&) { // messages of the library are for programmers
+  } catch (const std::exception&) { // the library's message is not meant for users
     complain(v, why_there_is_none(v));
   }
 }
@@ -230,7 +230,7 @@ JointLaw::JointLaw(const Study& study, std::vector<double> nominal, std::vector<
       if (is_plain && v.distribution == "lognormal") m.form = Marginal::Form::lognormal;
       if (m.form != Marginal::Form::general) m.a = p[0], m.b = p[1];
       if (m.form == Marginal::Form::lognormal) m.location = p[2];
-      for (const double z : {-3.0, 0.0, 3.0}) // tests numerical evaluation before anything runs
+      for (const double z : {-3.0, 0.0, 3.0}) // fails now if the distribution cannot be evaluated numerically
         if (std::isnan(m.at(z))) throw std::domain_error("no quantile");
       texts_.push_back(words_of(v, m.distribution, described.fit));
       if (!described.fit.empty()) fits_.push_back({v.name, texts_.back(), described.is_misfit});
@@ -283,7 +283,7 @@ std::vector<JointLaw::IndexSlope> JointLaw::index_slopes(const std::vector<doubl
   const std::vector<double> z = correlated(u.data());
   std::vector<IndexSlope> slopes;
   for (std::size_t i = 0; i < n; ++i) {
-    constexpr double h = 1e-4; // error h² of the quotient, 1e-12 by rounding
+    constexpr double h = 1e-4; // truncation error h² = 1e-8, rounding error 1e-12
     const double slope = (marginals_[i].at(z[i] + h) - marginals_[i].at(z[i] - h)) / (2.0 * h), x = marginals_[i].at(z[i]);
     slopes.push_back({-w[i] / slope, -w[i] * (x - mean(i)) / (slope * standard_deviation(i))});
   }
@@ -305,7 +305,7 @@ public:
       w_.push_back(2.0 * k_reach * weights[i] * std::exp(-0.5 * z_.back() * z_.back()) / std::sqrt(2.0 * std::numbers::pi));
     }
     standardise(a, a_);
-    // The second variable is evaluated at every required z, because a table would not be accurate enough.
+    // Evaluated at each required z, because interpolation in a table is not accurate enough.
     b_ = [&b](double z) { return b.at(z); };
     std::vector<double> values;
     for (const double z : z_) values.push_back(b.at(z));
@@ -342,7 +342,7 @@ private:
   double mean_b_ = 0.0, deviation_b_ = 1.0;
 };
 
-// Returns NaN if no correlation of the normal variables gives `rho`.
+// Returns the correlation of the normal variables that gives the correlation `rho` of the variables; NaN if there is none.
 double normal_correlation(const NatafIntegral& nataf, double rho) {
   double low = -0.99999, high = 0.99999;
   double below = nataf(low) - rho, above = nataf(high) - rho;

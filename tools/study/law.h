@@ -14,8 +14,8 @@ namespace steplap::study {
 /// The joint distribution of all variables of a study.
 class JointLaw {
 public:
-  /// `nominal` are the values of all variables, used for those that are constant. Errors in distributions and correlations are appended to
-  /// `problems`; the object must not be used then.
+  /// `nominal`: values of all variables, used for constant ones. Errors in distributions and correlations are appended to `problems`; if
+  /// there are any, the object must not be used.
   JointLaw(const Study& study, std::vector<double> nominal, std::vector<Diagnostic>& problems);
   JointLaw(JointLaw&&) noexcept;
   ~JointLaw();
@@ -28,18 +28,18 @@ public:
 
   /// Writes the values of all variables at the point u.
   void values_at(const double* u, double* values) const;
-  /// Returns the p-quantile of a random variable, given by its position in random().
+  /// Returns the p-quantile of a random variable. `place`: index in random().
   [[nodiscard]] double quantile(std::size_t place, double p) const;
-  /// First-order changes of a reliability index β with the distribution of one random variable.
+  /// Derivatives of a reliability index β with respect to the distribution of one random variable, at fixed limit state.
   struct IndexSlope {
-    double by_mean = 0.0;      ///< per unit by which the distribution is moved
-    double by_deviation = 0.0; ///< per unit of standard deviation by which it is stretched about its mean
+    double by_mean = 0.0;      ///< per unit shift of the distribution, in 1/unit of the variable
+    double by_deviation = 0.0; ///< per unit increase in the standard deviation, by stretching about the mean
   };
-  /// Returns these for each random variable, at a design point `u` with index `beta`, not zero (M. Hohenbichler, R. Rackwitz, Sensitivity and
-  /// importance measures in structural reliability, Civil Engineering Systems 3, 1986). For a normal variable the distribution keeps its
-  /// kind; of any other, moved and stretched values are those of the same shape.
+  /// Returns one entry per random variable, at a design point `u` with index `beta` ≠ 0 (M. Hohenbichler, R. Rackwitz, Sensitivity and
+  /// importance measures in structural reliability, Civil Engineering Systems 3, 1986). Shifting and stretching preserve the shape of the
+  /// distribution; a normal distribution stays normal.
   [[nodiscard]] std::vector<IndexSlope> index_slopes(const std::vector<double>& u, double beta) const;
-  /// Returns the mean and the standard deviation of a random variable, given by its position in random().
+  /// Returns the mean of a random variable; standard_deviation() returns its standard deviation. `place`: index in random().
   [[nodiscard]] double mean(std::size_t place) const;
   [[nodiscard]] double standard_deviation(std::size_t place) const;
   /// Returns a description: "lognormal, mean 0.25, standard deviation 0.05", with the result of a fit if there is one.
@@ -47,7 +47,7 @@ public:
   /// A distribution fitted to measurements.
   struct Fit {
     std::string variable, text;
-    bool is_misfit = false; ///< true if the measurements contradict it
+    bool is_misfit = false; ///< true if the measurements contradict the distribution
   };
   [[nodiscard]] const std::vector<Fit>& fits() const { return fits_; }
   [[nodiscard]] bool is_independent() const { return root_.empty(); }
@@ -67,7 +67,7 @@ private:
 /// Returns the mean of a variable's distribution, around which local studies are made. Throws ModelError.
 [[nodiscard]] double mean_of(const Variable& variable);
 
-/// Φ, the standard normal distribution function. Below: its inverse.
+/// Returns Φ(z), the standard normal distribution function; normal_quantile() is its inverse.
 [[nodiscard]] double normal_cdf(double z);
 [[nodiscard]] double normal_quantile(double p);
 /// Confidence interval of a probability after `successes` in `trials` (Clopper and Pearson).

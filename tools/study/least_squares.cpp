@@ -17,8 +17,8 @@ using Eigen::VectorXd;
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
-// Central differences with `times` the problem's step. If a neighbouring point has no residuals or is outside the range, the quotient is
-// one-sided; if neither side has residuals, the column is NaN.
+// Returns the Jacobian by central differences with `times` the problem's step. If one neighbouring point has no residuals or is outside the
+// range, the quotient is one-sided; if both do, the column is NaN.
 MatrixXd differences(const LeastSquaresProblem& problem, const VectorXd& at, const VectorXd& here, double times) {
   const Eigen::Index n = at.size();
   std::vector<VectorXd> points;
@@ -45,7 +45,7 @@ struct Linear {
   VectorXd rhs;
 
   Linear(const MatrixXd& jacobian, const VectorXd& residuals) { std::tie(r, rhs) = triangle_of(jacobian, residuals); }
-  // Marquardt's damping, scaled by the effect of each parameter. Parameters that are `held` stay constant.
+  // Returns the step for Marquardt's damping, scaled by the effect of each parameter. Parameters that are `held` do not change.
   [[nodiscard]] VectorXd step(double damping, const std::vector<bool>& held) const {
     const Eigen::Index n = r.cols();
     const double least = 1e-8 * std::max(r.colwise().norm().maxCoeff(), 1e-300);
@@ -66,7 +66,7 @@ struct Linear {
   [[nodiscard]] double gain(const VectorXd& step) const { return rhs.squaredNorm() - (rhs + r * step).squaredNorm(); }
 };
 
-// Returns true if the parameter is at a bound and the step would cross it.
+// Returns, for each parameter, true if it is at a bound that the step would cross.
 std::vector<bool> held_by(const VectorXd& at, const VectorXd& gradient) {
   std::vector<bool> held;
   for (Eigen::Index i = 0; i < at.size(); ++i) held.push_back((at[i] <= 0.0 && gradient[i] > 0.0) || (at[i] >= 1.0 && gradient[i] < 0.0));
@@ -98,9 +98,9 @@ bool try_steps(const LeastSquaresProblem& problem, const Linear& linear, double&
 } // namespace
 
 LeastSquaresMinimum minimise(const LeastSquaresProblem& problem, const VectorXd& start, const VectorXd& residuals) {
-  constexpr double k_close = 1e-8;  // of the variance; the remaining distance is 1e-4 standard deviations
-  constexpr double k_stuck = 1e-3;  // of the variance; difference quotients are not more accurate
-  constexpr double k_widest = 1e12; // damping
+  constexpr double k_close = 1e-8;  // tolerance of the decrease, relative to the variance: the minimum is within 1e-4 standard deviations
+  constexpr double k_stuck = 1e-3;  // as above, if no step decreases the sum: difference quotients are not more accurate
+  constexpr double k_widest = 1e12; // largest damping factor
   LeastSquaresMinimum m;
   m.at = start;
   m.residuals = residuals;
@@ -130,7 +130,7 @@ LeastSquaresMinimum minimise(const LeastSquaresProblem& problem, const VectorXd&
       if (left > k_stuck * m.sum / freedom) m.problem = "the search got stuck: the sum of squares has a kink or a jump there";
       return finish(), m;
     }
-    if (before - m.sum <= 1e-12 * before && left <= k_stuck * m.sum / freedom) { // the rest is rounding
+    if (before - m.sum <= 1e-12 * before && left <= k_stuck * m.sum / freedom) { // the remaining decrease is rounding
       m.jacobian = differences(problem, m.at, m.residuals, 1.0);
       return finish(), m;
     }
@@ -141,7 +141,7 @@ LeastSquaresMinimum minimise(const LeastSquaresProblem& problem, const VectorXd&
 }
 
 Identified identify(const LeastSquaresMinimum& minimum, double variance) {
-  constexpr double k_widest = 0.5; // of a range; with a larger standard deviation the record does not determine the direction
+  constexpr double k_widest = 0.5; // largest standard deviation of a determined direction, as a fraction of the range
   Identified told;
   RightSingular singular = right_singular(minimum.jacobian);
   told.singular = std::move(singular.values);

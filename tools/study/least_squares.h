@@ -1,8 +1,8 @@
-// Least squares for residuals that cost a simulation each: Levenberg-Marquardt method with difference quotients.
+// Nonlinear least squares for residuals that each require a simulation: Levenberg-Marquardt method with difference quotients.
 //
-// Parameters are scaled to 0 … 1 by their ranges, which are bounds. The difference step is chosen from the error ε of the runs: h = ∛ε of
-// the parameter's size, where the truncation error h² equals the error ε/h due to the runs. The difference of Jacobians with steps h and 2h
-// estimates the error of the derivatives. Independent evaluations are requested in one batch.
+// Parameters are scaled to 0 … 1 by their ranges, which are bounds. The difference step h, relative to the parameter's size, is ∛ε, where ε
+// is the relative error of the runs: the truncation error h² then equals the error ε/h due to the runs. The error of the derivatives is
+// estimated from Jacobians with steps h and 2h. Independent evaluations are requested in one batch.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ using ResidualBatch = std::function<std::vector<Eigen::VectorXd>(const std::vect
 struct LeastSquaresProblem {
   ResidualBatch residuals;
   Eigen::VectorXd step; ///< difference step, as a fraction of the ranges
-  double floor = 0.0;   ///< sum of squares due to the error of the runs alone
+  double floor = 0.0;   ///< sum of squares caused by the numerical error of the runs
   long iterations = 100;
 };
 
@@ -29,8 +29,8 @@ struct LeastSquaresMinimum {
   Eigen::VectorXd residuals;
   Eigen::MatrixXd jacobian;    ///< derivatives with respect to the scaled parameters; columns without a value are NaN
   double jacobian_error = 0.0; ///< Frobenius norm of the Richardson error estimate from steps h and 2h
-  double sum = 0.0;            ///< sum of squares
-  std::vector<bool> is_at_end; ///< per parameter: true at a bound
+  double sum = 0.0;            ///< sum of the squared residuals
+  std::vector<bool> is_at_end; ///< for each parameter: true if it is at a bound of its range
   std::string problem;         ///< empty if a minimum was found
 };
 
@@ -40,7 +40,7 @@ struct LeastSquaresMinimum {
 
 /// Parameters and directions that a minimum determines.
 struct Identified {
-  Eigen::MatrixXd covariance; ///< of the scaled parameters, within the determined directions
+  Eigen::MatrixXd covariance; ///< covariance of the scaled parameters, within the determined directions
   Eigen::MatrixXd directions; ///< orthonormal columns, in descending order of singular values
   Eigen::VectorXd singular;   ///< singular values of the Jacobian
   int rank = 0;               ///< number of determined directions

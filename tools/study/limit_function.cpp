@@ -30,7 +30,7 @@ LimitValue LimitSystem::value_of(const Outcome& outcome) const {
 
 namespace {
 
-// Limit states that only evidence names are no part of the system.
+// Returns the limit states whose failure is failure of the system; those used by [[evidence]] only are excluded.
 std::vector<std::string> names_of_system(const Study& study) {
   const std::vector<std::string>& asked = settings_of<ReliabilitySettings>(study).limit_states;
   if (!asked.empty()) return asked;

@@ -6,16 +6,16 @@
 
 namespace steplap::study {
 
-/// Value for one sample.
+/// Value of the limit function for one sample.
 struct LimitValue {
-  double g = 0.0;          ///< negative: failure
-  bool is_missing = false; ///< true if the run failed or cannot be trusted; g has no meaning then
-  bool is_bad = false;     ///< true if it is unknown whether the sample fails: g is missing, or zero to the rounding of the run
+  double g = 0.0;          ///< value of the limit function; negative: failure
+  bool is_missing = false; ///< true if the run failed or is not trusted; g is then undefined
+  bool is_bad = false;     ///< true if it is unknown whether the sample fails: g is missing, or zero to rounding
 };
 
 struct ReliabilitySettings;
 
-/// Limit states of a study that fail together.
+/// A system of limit states, in series (any failure is a failure) or in parallel (all must fail).
 class LimitSystem {
 public:
   /// `is_any`: the system fails if any of the limit states does, otherwise only if all do.

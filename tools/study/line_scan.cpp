@@ -9,7 +9,8 @@ namespace steplap::study {
 
 namespace {
 
-// Returns the indices of points at which the function may touch zero or cross it twice, those closest to zero first.
+// Returns the indices of samples with a local minimum of |g| and no sign change, smallest |g| first: the function may touch zero or cross
+// it twice there.
 std::vector<std::size_t> turns_of(const LineSamples& samples) {
   constexpr std::size_t k_most = 6;
   std::vector<std::size_t> turns;

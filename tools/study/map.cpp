@@ -1,7 +1,7 @@
 // Traces the zero curve of an expression in the plane of two variables.
 //
-// A grid is evaluated first. From every crossing of its lines with the curve, the curve is followed in both directions: a step along the
-// tangent, then a search for the curve across it.
+// First the expression is evaluated on a grid. From every crossing of a grid line the curve is followed in both directions: a step along
+// the tangent, then a search across it.
 #include "tools/study/map.h"
 
 #include "tools/study/crossing.h"
@@ -27,7 +27,7 @@ FieldTable map_fields() {
   return t;
 }
 
-using Point = std::array<double, 2>; ///< both variables, scaled by their ranges to [0, 1]
+using Point = std::array<double, 2>; ///< values of both variables, scaled by their ranges to [0, 1]
 
 Point along(const Point& p, const Point& direction, double s) { return {p[0] + s * direction[0], p[1] + s * direction[1]}; }
 double distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
@@ -36,7 +36,7 @@ bool is_inside(const Point& p) { return p[0] >= 0.0 && p[0] <= 1.0 && p[1] >= 0.
 struct Border {
   std::vector<Point> points;
   bool is_closed = false;
-  std::string end; ///< if not empty: reason why the curve was lost before the end of the ranges
+  std::string end; ///< reason why the curve was lost within the ranges; "" if it was followed to its end
 };
 
 class Plane {
@@ -95,7 +95,7 @@ private:
 };
 
 struct Grid {
-  std::size_t n; ///< points per side
+  std::size_t n; ///< grid points per side
   std::vector<Point> points;
   std::vector<double> g;
 
@@ -141,8 +141,8 @@ std::vector<Point> seeds_on_grid(Plane& plane, const Grid& grid_points, double t
   return seeds;
 }
 
-// Finds grid points at which the expression is closer to zero than at all neighbours, all with the same sign: there may be a closed curve
-// that crosses no grid line. Of equal neighbouring points the first is taken. Points closest to zero come first.
+// Returns grid points with a local minimum of the expression's magnitude and no sign change, smallest first. A closed curve that crosses no
+// grid line may be near them. Of equal neighbours only the first is returned.
 std::vector<std::size_t> hollows_of(const Grid& grid) {
   constexpr std::size_t k_most = 20;
   const auto n = static_cast<long>(grid.n);
@@ -170,10 +170,11 @@ std::vector<std::size_t> hollows_of(const Grid& grid) {
   return hollows;
 }
 
-// Searches from such a point in eight directions with decreasing distance for a point of the curve.
+// Searches a point of the curve from a local minimum of |g|: evaluates eight directions, moves to the best point, and halves the distance
+// if none is better.
 std::optional<Point> island_at(Plane& plane, Point at, double g, double radius) {
   constexpr int k_rounds = 24, k_ways = 8;
-  constexpr double k_least = 1e-3; // of the initial distance; smaller closed curves are not searched
+  constexpr double k_least = 1e-3; // smallest distance, relative to the initial one; smaller closed curves are not found
   for (const double least = k_least * radius; radius > least;) {
     for (int round = 0; round < k_rounds; ++round) {
       std::vector<Point> around;
@@ -224,8 +225,8 @@ public:
 private:
   static constexpr int k_halvings = 6;
 
-  // Finds a second crossing on a small circle around p, evaluated at 16 points. Points outside the ranges are moved to their bounds, so two
-  // of them may lie on both sides of p itself; such a crossing is used only if there is no other.
+  // Finds the direction of the curve at p from a sign change on a small circle around p, evaluated at 16 points. Points outside the ranges
+  // are moved to the bounds. Two moved points may then enclose p itself; such a sign change is used only if there is no other.
   std::optional<Point> tangent_at(const Point& p) {
     constexpr int k_circle_points = 16;
     const double radius = 0.1 * step_;
@@ -257,7 +258,7 @@ private:
   // Makes one step. Returns nothing if the curve is not found within a sector of ±45 degrees.
   std::optional<Point> step(const Point& p, const Point& tangent, double length) {
     const Point normal{-tangent[1], tangent[0]}, ahead = along(p, tangent, length);
-    double low = -length, high = length; // across the tangent, limited by the ranges
+    double low = -length, high = length; // limits of the search across the tangent, within the ranges
     for (int i = 0; i < 2; ++i) {
       if (normal[i] == 0.0) continue;
       const double a = -ahead[i] / normal[i], b = (1.0 - ahead[i]) / normal[i];
@@ -270,7 +271,7 @@ private:
     return along(ahead, normal, *s);
   }
 
-  // Returns the point at which the curve leaves the ranges, near p.
+  // Returns the point near p at which the curve reaches a bound of the ranges; nothing if it is too far from the bounds.
   std::optional<Point> leave(const Point& p, const Point& tangent) {
     for (int i = 0; i < 2; ++i) {
       const double edge = tangent[i] > 0.0 ? 1.0 : 0.0;
@@ -286,7 +287,7 @@ private:
     return {};
   }
 
-  // Continues from the last point to the bounds of the ranges. Returns true if the curve returns to its first point.
+  // Follows the curve from its last point to the bounds of the ranges. Returns true if the curve closes at its first point.
   bool go(Border& border, Point tangent) {
     constexpr std::size_t k_longest = 20000;
     const Point start = border.points.front();
@@ -352,8 +353,8 @@ void report(const Border& border, std::size_t number, Plane& plane, StudyRun& ru
   if (!border.end.empty()) answer.degrade(Standing::not_met);
 }
 
-// Reports the size of closed curves that may have been missed: the largest circle between grid points, at the centre of a square. Closed
-// curves indicated by a local minimum are found down to much smaller sizes.
+// Notes the largest closed curve that may have been missed: a circle through the corners of a grid square. Near local minima of |g| smaller
+// curves are found.
 void report_unseen(const Grid& grid, const Plane& plane, const StudyRun& run, Answer& answer) {
   const double radius = grid.width() / std::sqrt(2.0);
   Finding f{"map", "island", "unseen radius, of the ranges", radius};

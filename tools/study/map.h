@@ -7,8 +7,8 @@ namespace steplap::study {
 
 /// Settings of a "map" study.
 struct MapSettings : KindSettings {
-  std::vector<std::string> variables; ///< two names
-  std::string expression;             ///< the curve is its zero set
+  std::vector<std::string> variables; ///< names of the two variables
+  std::string expression;             ///< expression whose zeros form the curve
   double step = 0.02;                 ///< step along the curve, relative to the ranges
   long points = 11;                   ///< number of points per side of the first grid
   double tolerance = 1e-9;

@@ -87,7 +87,7 @@ template <class Function> Pair minimise_nelder_mead(const Function& function, co
   return s[0].at;
 }
 
-// Distributions on the whole axis or half axis, parametrised by two unbounded numbers.
+// Returns the distribution without bounds for two parameters that may have any value.
 OT::Distribution unbounded(const std::string& kind, const Pair& p) {
   if (kind == "normal") return OT::Normal(p[0], std::exp(p[1]));
   if (kind == "lognormal") return OT::LogNormal(p[0], std::exp(p[1]));
@@ -107,7 +107,8 @@ Pair beginning(const std::string& kind, const std::vector<double>& values) {
   return {mean, 0.5 * std::log(squares)};
 }
 
-// Returns the probability between the bounds, computed from the smaller tails.
+// Returns the probability between the variable's bounds. Uses the complementary distribution function above the median, to avoid
+// cancellation.
 double share_within(const Variable& v, const OT::Distribution& whole) {
   if (!v.upper) return whole.computeComplementaryCDF(*v.lower);
   if (!v.lower) return whole.computeCDF(*v.upper);
@@ -125,7 +126,8 @@ OT::Distribution fitted_within(const Variable& v, const std::vector<double>& val
     complain(v, "a truncated " + v.distribution + " distribution is fitted to values above zero only, and '" + v.measured + "' has others");
   if (std::all_of(values.begin(), values.end(), [&](double x) { return x == values.front(); }))
     complain(v, "all values of '" + v.measured + "' are the same: they have no distribution");
-  constexpr double k_least = 1e-6; // of the whole probability; smaller tails look alike and do not determine the parameters
+  // smallest probability between the bounds; smaller tails of different distributions are too similar to determine the parameters
+  constexpr double k_least = 1e-6;
   constexpr double k_impossible = std::numeric_limits<double>::infinity();
   const auto surprise = [&](const Pair& p) { // negative log-likelihood
     try {
@@ -136,7 +138,7 @@ OT::Distribution fitted_within(const Variable& v, const std::vector<double>& val
       const OT::Sample logs = whole.computeLogPDF(sample);
       for (OT::UnsignedInteger i = 0; i < logs.getSize(); ++i) sum -= logs(i, 0);
       return std::isfinite(sum) ? sum : k_impossible;
-    } catch (const OT::Exception&) { // parameters outside the domain of the distribution
+    } catch (const OT::Exception&) { // the parameters are outside the domain of the distribution
       return k_impossible;
     }
   };

@@ -16,8 +16,8 @@ FieldTable needs_fields() {
   return t;
 }
 
-// Removes output tables that may refer to channels which a variant lacks; they do not affect the motion. Requested channels are kept,
-// because responses may use them, except those of the removed element.
+// Removes plots and criteria, which may refer to channels that a variant lacks and do not affect the motion. Removes requested channels of
+// the removed element `gone`; responses may use the others.
 void drop_presentation(Model& model, const std::string& gone = "") {
   std::erase_if(model.tables, [](const TableEntry& e) { return e.kind->name == "plot" || e.kind->name == "acceptance"; });
   model.plots.clear();
@@ -54,7 +54,7 @@ double change_of(double before, double after) {
   return std::abs(after - before) / std::abs(before);
 }
 
-// Returns true if a table such as [[core]] would create the element again.
+// Returns true if completing the model, for example by [[core]], creates the removed element again.
 bool comes_back(const Model& given, const ModelVariant& variant) {
   if (variant.gone.empty()) return false;
   try {
@@ -103,7 +103,7 @@ std::vector<ModelVariant> variants_of(const Model& model) {
   return variants;
 }
 
-// Adds a variable that selects the variant.
+// Adds the variable "variant", whose value selects the variant.
 void add_variants(LoadedStudy& loaded) {
   if (loaded.models.size() != 1) return;
   loaded.variants = variants_of(loaded.models.front()->given);

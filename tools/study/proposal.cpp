@@ -7,9 +7,10 @@ namespace steplap::study {
 
 namespace {
 
-constexpr double k_wide = 0.2; // share of the wide part
+constexpr double k_wide = 0.2; // weight of the wide component
 
-// Centres: design points; if there are none, points near the limit state; otherwise the ends of searches.
+// Returns the points to be used as centres: design points; if there are none, unconverged points near the surface; otherwise all ends of
+// searches.
 std::vector<const DesignPoint*> usable_of(const std::vector<DesignPoint>& points) {
   std::vector<const DesignPoint*> usable;
   const auto take = [&](auto is_usable) {
@@ -30,7 +31,8 @@ Proposal::Proposal(const std::vector<DesignPoint>& points, const std::vector<std
   const std::vector<const DesignPoint*> usable = usable_of(points);
   double nearest = std::numeric_limits<double>::infinity();
   for (const DesignPoint* p : usable) nearest = std::min(nearest, std::abs(p->beta));
-  constexpr double k_too_far = 3.0; // points further away by this distance have negligible probability
+  // Distance beyond the nearest centre from which a centre is omitted: at 3 standard deviations more its probability is negligible.
+  constexpr double k_too_far = 3.0;
   for (const DesignPoint* p : usable)
     if (std::abs(p->beta) < nearest + k_too_far) centres_.push_back(p->u);
   centres_.insert(centres_.end(), more.begin(), more.end());

@@ -40,7 +40,7 @@ std::vector<std::vector<char>> Ranks::gather(const std::vector<char>& mine) cons
   return parts;
 }
 
-// Returns the number of threads of this rank. Launchers may bind ranks to processors; ranks that may use the same processors share them.
+// Returns the number of threads of this rank. Ranks that are bound to the same processors share them.
 int Ranks::threads() const {
   cpu_set_t mine;
   CPU_ZERO(&mine);

@@ -1,7 +1,4 @@
-// MPI processes of one study: rank 0 requests, stores and evaluates; the others run samples for it.
-//
-// A single process does not use MPI. Programs with several processes initialise MPI (tools/study/program/mpi_session.h) and use of_world();
-// a library never does.
+// MPI processes of one study. Rank 0 selects and stores the samples; all ranks run them.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +6,7 @@
 
 namespace steplap::study {
 
-/// The processes of a study, seen from one of them.
+/// All processes of a study, and the rank of this one.
 class Ranks {
 public:
   /// Represents this process only.

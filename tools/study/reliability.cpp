@@ -75,7 +75,7 @@ public:
       if (method == "subset") estimates_.push_back(subset_simulation(limit_, target_));
       if (method == "importance_sampling") sample_around(target_);
     }
-    if (has_form && estimates_.empty()) { // FORM never stands alone
+    if (has_form && estimates_.empty()) { // a first-order result is always checked by sampling
       SamplingTarget check = target_;
       check.cov = std::max(check.cov, 0.1);
       check.samples = std::min(check.samples, 5000L);
@@ -115,7 +115,7 @@ private:
     answer_.degrade(Standing::not_trusted);
   }
 
-  // Returns an objection to a design point; "" if there is none.
+  // Returns the reason why a design point may be wrong; "" if there is none.
   std::string doubt(const DesignPoint& p) const {
     if (p.off_surface >= 1e-4 * std::max(1.0, std::abs(p.beta)))
       return text_of("not on the limit state: |g| is %.3g there, %.3g standard deviations from zero", std::abs(p.g), p.off_surface);
@@ -127,16 +127,17 @@ private:
     return "";
   }
 
-  // Returns the number of comparisons of intervals with each other and with theory. One study in a hundred gives a false alarm by chance
-  // (Bonferroni correction).
+  // Returns the number of comparisons between estimates. The confidence level of each comparison is raised by it, so that only one study in
+  // a hundred reports a contradiction by chance (Bonferroni correction).
   [[nodiscard]] long comparisons() const {
     const auto theories = (asks("form") || asks("sorm") ? 1 : 0) + (asks("sorm") ? 3 : 0);
     const auto samplings = std::max<long>(1, std::count_if(settings_.methods.begin(), settings_.methods.end(),
                                                            [](const std::string& method) { return method != "form" && method != "sorm"; }));
-    return std::max(1L, samplings * theories + samplings * (samplings - 1)); // both bounds for comparisons between sampling methods
+    // comparisons of two sampling methods count twice, because both bounds are compared
+    return std::max(1L, samplings * theories + samplings * (samplings - 1));
   }
 
-  // Compares a probability by theory with sampling: returns a text with the ratio and its interval.
+  // Returns a sentence if a sampling interval does not contain the probability p: the ratio of p to it. Returns "" otherwise.
   std::string sampling_doubt(double p, const char* whose) const {
     for (const Estimate& e : estimates_) {
       const Interval test = e.test(run_.study().failed);
@@ -150,7 +151,7 @@ private:
     return text_of("%.3g", p / test.high) + (test.low > 0.0 ? text_of(" to %.3g", p / test.low) : " or more");
   }
 
-  // Reports the ratio in any case, to show how well sampling confirms the theory.
+  // Reports the ratio of p to the result of each sampling method, also if both agree.
   void report_factors(const char* method, const std::string& name, double p) {
     for (const Estimate& e : estimates_) {
       if (!e.is_trusted || !std::isfinite(e.cov)) continue;
@@ -233,9 +234,9 @@ private:
     if (k > 1) answer_.notes.push_back(std::to_string(k) + " design points: the first order probability is of the nearest alone");
   }
 
-  // Reports how another mean or scatter of each variable would change the probability, to first order at the design point. If the limit state
-  // is linear there, β = m/s with s² = Σ s_i², of which variable i contributes the share α_i². Multiplying its scatter by c changes β to
-  // β/√(1 − (1 − c²) α_i²).
+  // Reports how another mean or scatter of each variable would change the probability, to first order at the design point. For a linear
+  // limit state β = m/s, where s² = Σ s_i² and variable i contributes the fraction α_i². If its scatter is multiplied by c, β becomes β/√(1
+  // − (1 − c²) α_i²).
   void report_influence(const DesignPoint& point) {
     const auto& random = run_.law.random();
     const auto slopes = run_.law.index_slopes(point.u, point.beta);
@@ -263,7 +264,7 @@ private:
           "those of the independent variables from which they are made, in their order");
   }
 
-  // Names the variable whose scatter contributes most, and what better knowledge or another mean of it would change.
+  // Notes the variable whose scatter contributes most, and the effect of a smaller scatter or another mean.
   void note_most_important(const DesignPoint& point, const std::vector<JointLaw::IndexSlope>& slopes) {
     const auto most =
         std::max_element(point.alpha.begin(), point.alpha.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
@@ -283,8 +284,8 @@ private:
     return std::any_of(estimates_.begin(), estimates_.end(), [](const Estimate& e) { return e.is_trusted && std::isfinite(e.cov); });
   }
 
-  // Reports two sampling methods with disjoint intervals: one has missed a failure region. Both bounds are compared separately, because the
-  // difference between them, due to runs without a result, would hide it.
+  // Reports two sampling methods with disjoint intervals, because one of them has missed a failure region. The lower and upper bounds are
+  // compared separately; otherwise their difference, caused by runs without a result, would hide a contradiction.
   void compare_estimates() {
     for (std::size_t i = 0; i < estimates_.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A variable without a path may have any unit.
+// Returns "" for the unit "*", which stands for any unit.
 std::string unit_or_none(const std::string& unit) { return unit == "*" ? "" : unit; }
 
 std::string range_text(const Variable& v) {
@@ -75,7 +75,7 @@ Json numbers_json(const LoadedStudy& loaded) {
   return json;
 }
 
-// Describes measured records with which a fit compares channels, if the study has any.
+// Returns name, unit and channel of each measured record, for studies with such records.
 template <class AnyStudy> Json history_count_json(const AnyStudy& study) {
   Json json = Json::array();
   if constexpr (requires { study.histories; })

@@ -1,5 +1,5 @@
-// Description of a study that is kept in its store, so that a page can be made from the store alone: units, meaning of each variable and
-// number, settings.
+// Description of a study: units, meaning of each variable and number, settings. It is kept in the store, so that a page can be made from
+// the store alone.
 #pragma once
 
 #include "tools/study/law.h"
@@ -9,7 +9,7 @@
 
 namespace steplap::study {
 
-/// Returns JSON. It depends on the study file only.
+/// Returns the description as JSON. It depends on the study file only.
 [[nodiscard]] std::string about_of(const LoadedStudy& loaded, const JointLaw& law);
 
 } // namespace steplap::study

@@ -19,11 +19,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t k_most_text = 400000; ///< bytes of text of the study and of the models
-constexpr std::size_t k_most_reasons = 200; ///< listed
-constexpr std::size_t k_most_growth = 1500; ///< intermediate estimates per method
-constexpr std::size_t k_most_columns = 60;  ///< columns with a plot of their distribution
-constexpr std::size_t k_most_times = 3000;  ///< points of a measured record
+constexpr std::size_t k_most_text = 400000; ///< longest texts of study and models, in bytes
+constexpr std::size_t k_most_reasons = 200; ///< largest number of reasons in the list
+constexpr std::size_t k_most_growth = 1500; ///< largest number of intermediate estimates per method
+constexpr std::size_t k_most_columns = 60;  ///< largest number of columns with a plot of their distribution
+constexpr std::size_t k_most_times = 3000;  ///< largest number of points of a measured record
 
 template <class T> std::string base64(const std::vector<T>& values) {
   static const char* const k_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -41,13 +41,13 @@ template <class T> std::string base64(const std::vector<T>& values) {
   return text;
 }
 
-// All samples by column.
+// All samples of a study, stored by column.
 struct Samples {
   std::vector<ReportColumn> columns;
-  std::vector<std::string> is;             ///< per column: description
-  std::vector<std::vector<double>> values; ///< per column
+  std::vector<std::string> is;             ///< description of each column
+  std::vector<std::vector<double>> values; ///< values of each column
   std::vector<std::uint8_t> status;
-  std::vector<std::uint32_t> reason; ///< index in `reasons`
+  std::vector<std::uint32_t> reason; ///< reason of each sample, as an index in `reasons`
   std::vector<std::string> reasons{""};
   [[nodiscard]] std::size_t size() const { return status.size(); }
 };
@@ -106,7 +106,7 @@ std::vector<std::size_t> columns_of(const Samples& samples, const std::string& r
   return found;
 }
 
-// Returns 2 if the run failed, 1 if a limit state is negative.
+// Returns the class of each sample: 2 for a failed run, 1 for a negative limit state, 0 otherwise.
 std::vector<char> classes_of(const Samples& samples) {
   std::vector<char> classes(samples.size(), 0);
   const std::vector<std::size_t> limits = columns_of(samples, "limit state");
@@ -138,7 +138,7 @@ Json samples_json(const Samples& samples, const std::vector<char>& classes, std:
   for (const std::size_t i : chosen) numbers.push_back(static_cast<std::uint32_t>(i + 1));
   json["numbers"] = base64(numbers);
   json["status"] = base64(taken(samples.status, chosen));
-  // Reasons that differ only in numbers would be too many. Only reasons of shown samples are listed.
+  // Lists the reasons of the samples shown only, because their total number has no limit.
   Json reasons = Json::array({""});
   std::map<std::uint32_t, std::uint32_t> places{{0U, 0U}};
   std::vector<std::uint32_t> reason;
@@ -201,7 +201,7 @@ Json distributions_json(const Samples& samples, Drawn drawn) {
     const std::vector<double>& values = samples.values[c];
     if (samples.columns[c].role == "cost") continue;
     if (samples.columns[c].role == "variable" && std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end())
-      continue; // constant variable
+      continue; // constant variables are not shown
     if (json["of"].size() < k_most_columns)
       json["of"].push_back(tally_json(samples.columns[c].name, tally_of(values, drawn == Drawn::independently)));
     else ++left_out;
@@ -215,7 +215,7 @@ Json running_json(const std::string& subject, const char* quantity, const std::s
           {"value", r.value},   {"low", r.low},         {"high", r.high}};
 }
 
-// For independent samples: convergence of failure fractions and means.
+// Returns how failure fractions and means converge with the number of independent samples.
 Json running_estimates(const Samples& samples, const std::string& failed) {
   Json json = Json::array();
   for (const std::size_t c : columns_of(samples, "limit state")) {
@@ -254,7 +254,7 @@ Json findings_json(const std::vector<Finding>& findings, const std::vector<Repor
   return json;
 }
 
-// Returns all subjects of findings.
+// Returns all columns to which findings may refer: samples and measured records.
 std::vector<ReportColumn> named_columns(const Samples& samples, const Json& about) {
   std::vector<ReportColumn> columns = samples.columns;
   for (const Json& h : about["histories"]) columns.push_back({h.value("name", ""), h.value("unit", ""), "history"});
@@ -288,7 +288,7 @@ Json growth_json(const std::vector<Finding>& growth) {
   return json;
 }
 
-// Groups reasons that differ only in numbers: shows the first one and their count.
+// Returns the reasons of failed runs with their counts. Reasons that differ in numbers only are counted together.
 Json reasons_json(Store& store) {
   struct Group {
     Store::Reason first;
@@ -354,7 +354,7 @@ std::string shortened(const std::string& text) {
   return text.size() <= k_most_text ? text : text.substr(0, k_most_text) + "\n# … the rest is in the store\n";
 }
 
-// '<' occurs in JSON strings only, where it can be escaped.
+// Escapes '<', which would end the script element. It occurs within JSON strings only.
 std::string for_script(const std::string& json) {
   std::string safe;
   safe.reserve(json.size());
@@ -381,7 +381,7 @@ Json status_names() {
 
 } // namespace
 
-// Each class gets a third of the places. Unused places go to other classes, rarest first.
+// Selects at most `most` samples: up to a third of each class. Places that a class does not use go to the others, first to the rarest.
 std::vector<std::size_t> chosen_samples(const std::vector<char>& classes, std::size_t most) {
   std::vector<std::size_t> of[3], chosen;
   for (std::size_t i = 0; i < classes.size(); ++i) of[static_cast<std::size_t>(classes[i])].push_back(i);

@@ -21,7 +21,7 @@ std::string unit_of(const std::vector<ReportColumn>& columns, const std::string&
   return column ? column->unit : "";
 }
 
-// Splits "design point 2", "border 1 point 17": the number follows the first word or words.
+// Returns the number after `noun` in a subject: 2 in "design point 2"; 0 if the subject does not begin with the noun.
 long place_in(const std::string& subject, const std::string& noun) {
   long place = 0;
   if (subject.starts_with(noun + " ")) std::from_chars(subject.data() + noun.size() + 1, subject.data() + subject.size(), place);
@@ -34,12 +34,12 @@ std::string quotient(const std::string& above, const std::string& below) {
          (below.find(' ') == std::string::npos && below.find('/') == std::string::npos ? below : "(" + below + ")");
 }
 
-// Returns true if the quantity begins with the part's text, or ends with it if that begins with a blank.
+// Returns true if the quantity of a finding matches the text of a part, which is a prefix or, if it begins with a blank, a suffix.
 bool is_of(const Finding& f, const FindingPart& part) {
   return part.quantity.front() == ' ' ? f.quantity.ends_with(part.quantity) : f.quantity.starts_with(part.quantity);
 }
 
-// Finds the part and its SI unit. A quantity has the same presentation in all kinds of study.
+// Finds the presentation of a finding and its SI unit. Searches all study kinds, because a quantity has the same meaning in each.
 void find_part(const Finding& f, const std::vector<ReportColumn>& columns, FindingView& view, int& digits) {
   const ReportColumn* coordinate = find_column(columns, f.quantity);
   for (const StudyKind& kind : study_kinds())
@@ -53,7 +53,8 @@ void find_part(const Finding& f, const std::vector<ReportColumn>& columns, Findi
   for (const StudyKind& kind : study_kinds())
     for (const FindingPart& part : kind.parts) {
       if (!is_of(f, part)) continue;
-      if (part.unit == UnitOf::subject && !find_column(columns, f.subject)) continue; // defined by another kind
+      // the subject has no unit here; another kind may define this quantity
+      if (part.unit == UnitOf::subject && !find_column(columns, f.subject)) continue;
       view.role = part.role;
       digits = part.digits;
       if (part.quantity.back() == ' ') view.variable = f.quantity.substr(part.quantity.size());
@@ -65,7 +66,7 @@ void find_part(const Finding& f, const std::vector<ReportColumn>& columns, Findi
   view.unit = "SI";
 }
 
-// Formats like printf, but small numbers have an exponent.
+// Formats with `digits` significant digits; values below 1e-3 get an exponent.
 std::string plain(double value, int digits) {
   constexpr double k_small = 1e-3;
   char text[64];
@@ -96,7 +97,7 @@ std::string rounded(double value, int last) {
   if (size == 0.0) return "0";
   const int first = static_cast<int>(std::floor(std::log10(size)));
   char text[64];
-  const bool is_zero = size < 0.5 * std::pow(10.0, last); // zero relative to its interval
+  const bool is_zero = size < 0.5 * std::pow(10.0, last); // the value is rounded to zero
   if (is_zero && last < -k_most) return "0";
   if (!is_zero && (first < -3 || first > 6)) {
     std::snprintf(text, sizeof text, "%.*e", std::clamp(first - last, 0, k_most - 1), value);
@@ -111,7 +112,8 @@ std::string rounded(double value, int last) {
   return tidied(text);
 }
 
-// Finds the power of ten of the second digit of the interval's width, or of the known half of the interval.
+// Determines the last digit to show as a power of ten: the second digit of the interval's width. If only one end is finite, half the
+// interval is used. Returns false without an interval.
 bool last_place(double value, double low, double high, int& last) {
   const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
   const double width = has_low && has_high ? high - low : has_low ? std::abs(value - low) : has_high ? std::abs(high - value) : 0.0;
@@ -139,7 +141,7 @@ FindingView view_of(const Finding& f, const std::vector<ReportColumn>& columns) 
   const UnitPrefix prefix = prefix_for(std::max({finite(f.value), finite(f.low), finite(f.high)}), view.unit);
   const double factor = std::pow(10.0, prefix.exponent), low = factor * f.low, high = factor * f.high;
   view.unit = prefix.text + view.unit;
-  if (view.role == "swing") { // the ends of a bar are no confidence interval
+  if (view.role == "swing") { // the ends are a range of values, not a confidence interval
     if (std::isfinite(f.value)) view.value = tidied(plain(factor * f.value, digits));
     if (std::isfinite(f.value)) view.interval = tidied(plain(low, 6)) + " to " + tidied(plain(high, 6));
     return view;

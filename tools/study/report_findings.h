@@ -19,14 +19,14 @@ struct FindingView {
   std::string variable;        ///< variable to which the quantity refers; "" if none
   long place = 0;              ///< number of a border or design point, from 1
   std::string value, interval; ///< formatted with the unit's prefix; "" if not available
-  std::string unit;            ///< with its prefix; "SI" for an unknown quantity
+  std::string unit;            ///< unit with its prefix; "SI" for an unknown quantity
 };
 
 /// Determines the presentation of a finding from its quantity.
 [[nodiscard]] FindingView view_of(const Finding& finding, const std::vector<ReportColumn>& columns);
 
-/// Formats an estimate: "1.83e-4" for 1.8273e-4 with interval 1.5e-4 to 2.2e-4. Two digits of the interval's width are shown; the first of
-/// them is significant. Without an interval `digits` are shown.
+/// Formats an estimate so that the last digit is the second digit of the interval's width: "1.83e-4" for 1.8273e-4 with interval 1.5e-4 to
+/// 2.2e-4. Without an interval, `digits` significant digits are shown.
 [[nodiscard]] std::string estimate_text(double value, double low, double high, int digits);
 
 } // namespace steplap::study

@@ -27,7 +27,7 @@ Curve cumulative_of(const std::vector<double>& sorted, const Tally& tally, bool 
   const double half = std::sqrt(std::log(2.0 / (1.0 - k_confidence)) / (2.0 * n));
   for (std::size_t k = 0, count = std::min(most, sorted.size()); k < count; ++k) {
     std::size_t place = count == 1 ? 0 : k * (sorted.size() - 1) / (count - 1);
-    while (place + 1 < sorted.size() && sorted[place + 1] == sorted[place]) ++place; // upper end of a step
+    while (place + 1 < sorted.size() && sorted[place + 1] == sorted[place]) ++place; // the last of equal values: the upper end of the step
     if (!curve.x.empty() && curve.x.back() == sorted[place]) continue;
     const double reached = static_cast<double>(tally.below) + static_cast<double>(place + 1);
     curve.x.push_back(sorted[place]);
@@ -65,7 +65,7 @@ Histogram histogram_of(const std::vector<double>& sorted, bool is_independent) {
   return histogram;
 }
 
-// Returns sample counts with increasing distance at which an estimate is shown, including the last.
+// Returns true for sample counts at which an estimate is shown: `next`, which then grows by a constant factor, and the last count.
 bool is_instant(std::size_t count, std::size_t total, double& next) {
   constexpr double k_growth = 1.07;
   if (count != total && static_cast<double>(count) < next) return false;

@@ -10,7 +10,7 @@ namespace steplap::study {
 
 namespace {
 
-// Adds notes on fitted distributions. If the measurements contradict one, results that depend on it cannot be trusted.
+// Notes the fitted distributions. If measurements contradict one, the answer is marked as not trusted.
 void add_fits(const JointLaw& law, Answer& answer) {
   for (const JointLaw::Fit& fit : law.fits()) {
     answer.notes.push_back("Variable '" + fit.variable + "': " + fit.text + ".");
@@ -18,7 +18,7 @@ void add_fits(const JointLaw& law, Answer& answer) {
   }
 }
 
-// Kinds that set variables individually do not use the joint distribution.
+// Notes the correlations, except for study kinds that set variables one by one and do not use the joint distribution.
 void add_correlations(const Study& study, Answer& answer) {
   if (kind_of(study).draws_jointly) return;
   for (const Correlation& c : study.correlations)
@@ -28,7 +28,7 @@ void add_correlations(const Study& study, Answer& answer) {
 
 Answer answer_of(const LoadedStudy& loaded, Store& store, const Ranks& ranks, const StudyOptions& options) {
   std::vector<Diagnostic> problems;
-  const JointLaw law(loaded.study, loaded.nominal, problems); // already checked by the reader
+  const JointLaw law(loaded.study, loaded.nominal, problems); // the reader has already checked it
   store.describe(about_of(loaded, law));
   Evaluator evaluator(loaded, store, ranks, options.threads, [&options](const Pace& pace) {
     if (options.progress) options.progress(pace);
@@ -57,7 +57,7 @@ Answer run_first(const LoadedStudy& loaded, const std::string& path, const Ranks
   return answer;
 }
 
-// Releases the other ranks, whatever happens on rank 0.
+// Ends the work of the other ranks at the end of the scope, also after an exception.
 class Dismissal {
 public:
   explicit Dismissal(const Ranks& ranks) : ranks_(ranks) {}

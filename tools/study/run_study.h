@@ -15,9 +15,9 @@ namespace steplap::study {
 /// Options of run_study().
 struct StudyOptions {
   int threads = 1;                              ///< number of threads of this process, at least 1
-  StoreMode mode = StoreMode::run;              ///< use of samples that the store already contains
+  StoreMode mode = StoreMode::run;              ///< what to do if the store already contains samples
   std::function<void(const Pace&)> progress;    ///< called after each batch of samples
-  std::function<std::string()> stop;            ///< called after each batch; a text other than "" ends the study and becomes the reason
+  std::function<std::string()> stop;            ///< called after each batch; a non-empty text stops the study and becomes its reason
   std::function<void(const std::string&)> note; ///< receives messages for the user, one sentence each
 };
 

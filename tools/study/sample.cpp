@@ -21,13 +21,13 @@ FieldTable sample_fields() {
   return t;
 }
 
-constexpr std::size_t k_block = 10000; // samples per request, so that memory does not grow with their number
+constexpr std::size_t k_block = 10000; // largest number of samples per request, which limits the memory
 
-/// Sequence of points of the unit cube.
+/// A method that chooses points of the unit cube.
 class Design {
 public:
   virtual ~Design() = default;
-  virtual void next(std::size_t count, std::vector<double>& uniform) = 0; ///< returns `count` points
+  virtual void next(std::size_t count, std::vector<double>& uniform) = 0; ///< returns the next `count` points, one after the other
 };
 
 class MonteCarlo : public Design {
@@ -44,7 +44,8 @@ private:
   std::uint64_t sample_ = 0;
 };
 
-/// Latin hypercube: one point in each of as many strata as there are samples, for every variable, paired at random.
+/// Latin hypercube: each variable's range is divided into as many strata as there are samples, with one sample in each. Strata of different
+/// variables are paired at random.
 class LatinHypercube : public Design {
 public:
   LatinHypercube(std::uint64_t seed, std::size_t dimension, std::size_t count) : random_(seed, 2), count_(count), strata_(dimension) {
@@ -96,7 +97,7 @@ std::unique_ptr<Design> design_of(const Study& study, std::size_t dimension) {
 
 // Mean and variance of finite values, updated sample by sample (Welford).
 struct Moments {
-  long count = 0, missing = 0, unknown = 0; ///< missing: infinite (the event never happened) or unknown
+  long count = 0, missing = 0, unknown = 0; ///< missing: not finite, for example the time of an event that never happened; unknown: NaN
   double mean = 0.0, squares = 0.0;
   void add(double x) {
     if (!std::isfinite(x)) {
@@ -148,7 +149,7 @@ public:
       deviation.status = status;
       answer.findings.push_back(deviation);
       for (const double p : {0.05, 0.5, 0.95}) answer.findings.push_back(quantile(run, i, p, is_random));
-      // Omitted samples differ from the others, so results for the rest do not answer the question.
+      // Runs without a value may differ systematically from the others, so results of the rest may be biased.
       if (m.unknown > 0) answer.degrade(m.unknown == total_ ? Standing::not_trusted : Standing::not_met);
     }
     if (bad_ > 0) answer.degrade(Standing::not_met);
@@ -156,7 +157,7 @@ public:
   }
 
 private:
-  // Returns a quantile of all samples in the store with a value. Its interval uses order statistics.
+  // Returns the p-quantile of the values in the store, with a confidence interval from order statistics.
   Finding quantile(StudyRun& run, std::size_t i, double p, bool is_random) const {
     char text[40];
     std::snprintf(text, sizeof text, "%g %% quantile", 100.0 * p);
@@ -209,7 +210,7 @@ private:
 void check_sample(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   check_random(loaded, true, problems);
   const auto& s = settings_of<SampleSettings>(loaded.study);
-  constexpr std::size_t k_most = 40; // dimension up to which a low-discrepancy sequence fills the space
+  constexpr std::size_t k_most = 40; // largest dimension for a low-discrepancy sequence
   if (loaded.study.variables.size() > k_most && s.design == "halton")
     problems.push_back(
         {s.where, "Halton's sequence does not fill spaces of more than 40 variables: take \"sobol\" or \"latin_hypercube\""});
@@ -236,7 +237,7 @@ Answer run_sample(StudyRun& run) {
     for (const StoredSample& sample : run.evaluator.evaluate(points)) summary.add(sample);
     done += count;
   }
-  run.evaluator.store().forget_from(run.evaluator.asked() + 1); // samples of an earlier version of the study that requested more
+  run.evaluator.store().forget_from(run.evaluator.asked() + 1); // removes samples that an earlier version of the study requested
   Answer answer;
   summary.report(run, answer);
   return answer;

@@ -19,12 +19,12 @@
 
 namespace steplap::study {
 
-/// Ends of a channel's range that a response needs. `low_below`: if `low` is not requested, only lows below this value matter. If a
-/// response uses several channels, only the outermost extreme matters; the channels then compete ("race").
+/// Extremes of a channel that responses need. If a response takes the extreme over several channels, each channel's extreme matters only if
+/// it exceeds those of the others; such a group is a "race".
 struct RequestedExtremes {
   bool low = false, high = false;
   double low_below = -std::numeric_limits<double>::infinity();
-  std::vector<std::size_t> low_races, high_races; ///< indices in the runner's count
+  std::vector<std::size_t> low_races, high_races; ///< indices of the races in which the channel's minimum and maximum take part
   void add(const RequestedExtremes& more) {
     low = low || more.low;
     high = high || more.high;
@@ -38,7 +38,7 @@ namespace {
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
-// Returns the outermost of all matching channels.
+// Returns the extreme over all channels that match the response.
 Extreme extreme_of(const Response& r, const std::vector<ChannelRange>& ranges) {
   const bool is_low = r.measure == Measure::lowest, is_largest = r.measure == Measure::largest_magnitude;
   Extreme best;
@@ -52,8 +52,8 @@ Extreme extreme_of(const Response& r, const std::vector<ChannelRange>& ranges) {
   return best;
 }
 
-// Returns true if the outermost extreme occurs near a singular position of joints, where reactions are proportional to 1/distance. How near
-// a run comes is accidental, and a single run does not reveal the error.
+// Returns true if the extreme occurs near a singular position of joints, where reactions grow as 1/distance. Its value depends on the
+// steps, which error estimates of one run do not show.
 bool is_singular(const Response& r, const std::vector<ChannelRange>& ranges) {
   const Extreme extreme = extreme_of(r, ranges);
   return std::any_of(ranges.begin(), ranges.end(), [&](const ChannelRange& range) {
@@ -69,7 +69,7 @@ const ChannelRange* range_of(const Response& r, const std::vector<ChannelRange>&
   return nullptr;
 }
 
-// Evaluates written samples; values between them are unknown here.
+// Computes the mean or the path of a channel from the output samples.
 double along(const Response& r, const Trajectory& trajectory) {
   const auto& channels = trajectory.channels();
   const auto found = std::find_if(channels.begin(), channels.end(), [&](const Channel* c) { return matches_pattern(c->name, r.channel); });
@@ -95,11 +95,11 @@ double of_events(const Response& r, const std::vector<Event>& events) {
   return r.measure == Measure::event_count ? static_cast<double>(count) : r.otherwise.value_or(std::numeric_limits<double>::infinity());
 }
 
-// Numbers of a run are known to this part of their value at best: margins of sliding joints differ by 2e-12 from 1.
+// Relative rounding error of results of a run. For example, margins of sliding joints differ from 1 by 2e-12.
 constexpr double k_rounding = 1e-10;
 
-// Returns true if a response is the lowest margin of joints one of which slid. More was then asked of the joint than it holds: its margin was
-// below 1. How far below is not known, because friction gives way.
+// Returns true if the response is the lowest margin of joints and one of them slid. The margin was then below 1, but the value is unknown,
+// because friction limits the load.
 bool has_slipped(const Response& r, const std::vector<Event>& events) {
   return r.measure == Measure::lowest && std::any_of(events.begin(), events.end(), [&](const Event& event) {
            return is_slip(event.kind) && matches_pattern(event.element + ".margin", r.channel);
@@ -107,7 +107,7 @@ bool has_slipped(const Response& r, const std::vector<Event>& events) {
 }
 constexpr double k_below = 10.0 * k_rounding;
 
-// Returns true if the values of a response have the rounding of a run. Counts, verdicts and codes have none.
+// Returns true if the values of a response have rounding errors; counts, verdicts and codes are exact.
 bool has_rounding(const Response& r, const System& system) {
   if (!r.expression.empty() || r.measure == Measure::event_count || r.measure == Measure::verdict) return false;
   const std::vector<const Channel*> channels = channels_of(r, system);
@@ -129,15 +129,15 @@ double value_of(const Response& r, const RunResult& result, const Judgement& jud
   return r.takes_time ? e.t : has_slipped(r, result.events) ? std::min(e.value, 1.0 - k_below) : e.value;
 }
 
-/// Running extremes of the channels of a response.
+/// Extremes so far over all channels of one race.
 struct RunningExtremes {
   double lowest = std::numeric_limits<double>::infinity(), highest = -std::numeric_limits<double>::infinity();
 };
 
-using RunningExtremesList = std::vector<std::shared_ptr<RunningExtremes>>; // channels of a run refer to them
+using RunningExtremesList = std::vector<std::shared_ptr<RunningExtremes>>; // shared between the channels of a race
 
-// Bounds of expensive channels. They exclude extremes that are not needed: for a channel in a race, values that another channel has already
-// exceeded, even if the channel continues to change at its last rate.
+// Restricts the bounds of an expensive channel, so that it is evaluated only where it may reach a required extreme. In a race these are
+// values beyond the extreme of all channels so far. The bounds are widened by the channel's change per step.
 class RequestedBounds {
 public:
   RequestedBounds(std::function<ValueBounds(const Snapshot&)> bounds, const RequestedExtremes& ends, const RunningExtremesList& races)
@@ -147,9 +147,9 @@ public:
   }
 
   ValueBounds operator()(const Snapshot& s) {
-    constexpr double k_never = 1e300; // no extreme exceeds it
+    constexpr double k_never = 1e300; // larger than any value
     const ValueBounds b = bounds_(s);
-    if (s.t >= t_) { // otherwise a query inside a step
+    if (s.t >= t_) { // not for evaluations within a step
       reach_ = {widened(reach_.low, b.low - last_.low), widened(reach_.high, b.high - last_.high)};
       last_ = b;
       t_ = s.t;
@@ -162,7 +162,8 @@ public:
   }
 
 private:
-  // Change of a bound between the ends of a step, at least half of the previous one, because both ends are similar near an extremum.
+  // Returns the allowance for a change of a bound within a step. It is at least half the previous one, because a bound is nearly constant
+  // near an extremum.
   static double widened(double reach, double change) {
     return std::isfinite(change) ? std::max(std::abs(change), 0.5 * reach) : 0.5 * reach;
   }
@@ -184,7 +185,7 @@ void leave_out_others(Channel& channel, const RequestedExtremes& ends, const Run
   note(ends.high_races, [](RunningExtremes& race, double value) { return race.highest = std::max(race.highest, value), value; });
 }
 
-// Returns the extremes of a channel that decide whether a run can be trusted. Of the margin of a joint only values below 1 matter.
+// Returns the extremes of a channel that decide whether a run is trusted. A joint's margin matters only below 1.
 RequestedExtremes ends_of_trust(const Channel* channel) {
   RequestedExtremes ends;
   if (channel && channel->role == ChannelRole::margin) ends.low_below = 1.0;
@@ -193,7 +194,7 @@ RequestedExtremes ends_of_trust(const Channel* channel) {
 }
 
 void worsen(Outcome& outcome, SampleStatus status, const std::string& reason) {
-  if (outcome.status != SampleStatus::ok) return; // the first reason is reported
+  if (outcome.status != SampleStatus::ok) return; // only the first reason is kept
   outcome.status = status;
   outcome.reason = reason;
 }
@@ -217,24 +218,24 @@ Model model_with(const LoadedStudy& loaded, const StudyModel& model, const doubl
   return changed;
 }
 
-// Data that all runs of a model share. Extremes of all channels would take a quarter of a run's time, so only those requested are computed,
-// and those that show whether a run can be trusted.
+// Data shared by all runs of a model. Only the extremes that responses need, and those that decide whether a run is trusted, are computed;
+// all extremes would take 25 % of the time of a run.
 struct SampleSimulator::SharedRunData {
-  /// Number `variable` of the study, set at a path as it is or multiplied by the model's value.
+  /// A path of the model that is set to `factor` times variable number `variable`.
   struct Setting {
     std::size_t variable;
     double factor;
   };
   const StudyModel& model;
-  bool is_judged = false;                            ///< a response needs the judgement, for which criteria may use any channel
-  bool needs_closed_verdict = false;                 ///< a response has no meaning if the verdict is open
-  std::vector<std::string> channels;                 ///< names of the channels
-  std::map<std::string, RequestedExtremes> extremes; ///< the channels whose extremes are requested
+  bool is_judged = false;                            ///< true if a response needs the judgement; criteria may use any channel
+  bool needs_closed_verdict = false;                 ///< true if a response is undefined for an open verdict
+  std::vector<std::string> channels;                 ///< names of the required channels
+  std::map<std::string, RequestedExtremes> extremes; ///< required extremes by channel name
   std::size_t races = 0;
-  std::vector<std::string> sampled; ///< patterns
-  Sampling sampling;                ///< for histories
+  std::vector<std::string> sampled; ///< name patterns of channels whose output samples are needed
+  Sampling sampling;                ///< output times for measured records
   std::vector<Setting> settings;
-  std::vector<double> numbers; ///< values of the settings
+  std::vector<double> numbers; ///< values to which the settings are set
   std::unique_ptr<Variants> variants;
 
   SharedRunData(const LoadedStudy& loaded, const StudyModel& which) : model(which), sampling(sampling_of(loaded.study, which)) {
@@ -303,7 +304,7 @@ SampleSimulator::SampleSimulator(const LoadedStudy& loaded) : loaded_(loaded) {
 
 SampleSimulator::~SampleSimulator() = default;
 
-// Writes the channels of histories at their times to their positions among all values.
+// Writes the values of the measured channels at the measured times into `outcome.curve`.
 void SampleSimulator::compare(const SharedRunData& runner, const RunResult& result, Outcome& outcome) const {
   std::size_t place = 0;
   for (const History& h : loaded_.study.histories) {
@@ -355,7 +356,7 @@ void SampleSimulator::run_system(const SharedRunData& runner, const Model& whole
   else worsen(outcome, SampleStatus::gave_up, failure);
 }
 
-// Computes the verdict as the command line does, with findings, and with errors from finer runs if these are cheap.
+// Judges the run as the command line does, including findings and, if affordable, error estimates from finer runs.
 void SampleSimulator::run_judged(const SharedRunData& runner, Model whole, std::unique_ptr<System> system, Outcome& outcome) {
   if (!whole.output.channels.empty())
     whole.output.channels.insert(whole.output.channels.end(), runner.sampled.begin(), runner.sampled.end());
@@ -375,7 +376,7 @@ void SampleSimulator::run_model(SharedRunData& runner, const double* values, Out
   try {
     const std::size_t variant = loaded_.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded_.study.variables.size() - 1]);
     std::unique_ptr<System> system;
-    std::optional<Model> changed; // needed only if a variant changes the model
+    std::optional<Model> changed; // used only if a variant changes the model
     if (variant == 0) {
       for (std::size_t i = 0; i < runner.settings.size(); ++i)
         runner.numbers[i] = runner.settings[i].factor * values[runner.settings[i].variable];
@@ -412,12 +413,12 @@ void SampleSimulator::evaluate_formulas(std::vector<double>& all) const {
   for (const auto& [place, expression] : expressions_) all[variables + place] = expression(all.data());
 }
 
-// Returns how far the rounding of the runs' numbers moves each number: the sum over all of them.
+// Returns the change of each number, summed over all measured responses, when these change by their rounding errors.
 std::vector<double> SampleSimulator::rounding_of_formulas(const std::vector<double>& all) const {
   const std::size_t variables = loaded_.study.variables.size();
   std::vector<double> rounding(all.size() - variables, 0.0);
   for (const std::size_t i : measured_) {
-    if (all[variables + i] == loaded_.study.responses[i].otherwise) continue; // of an event that never happens
+    if (all[variables + i] == loaded_.study.responses[i].otherwise) continue; // time of an event that never happens: exact
     std::vector<double> largest(rounding.size(), 0.0);
     for (const double side : {-1.0, 1.0}) {
       std::vector<double> moved = all;
@@ -431,10 +432,10 @@ std::vector<double> SampleSimulator::rounding_of_formulas(const std::vector<doub
   return rounding;
 }
 
-// Computes the numbers that formulas define. A limit state that is smaller than its change by the rounding of the runs has no sign and
-// becomes zero. That happens at a border, and on whole stretches if friction that slides keeps a number at a constant, such as its share.
-// A zero that rounding does not change, such as a number of slips, is exact. Returns the index of the first limit state without sign; −1 if
-// there is none. Borders that are sought (LimitState::is_border) are not counted.
+// Computes the numbers defined by formulas. A limit state smaller in magnitude than its rounding error has no certain sign and is set to
+// zero. This happens at borders, and on whole intervals if sliding friction keeps a number constant, for example its utilisation at 1. A
+// zero without rounding error, such as a number of slips, is exact. Returns the index of the first limit state without sign, except those
+// whose zeros the study searches; −1 if there is none.
 int SampleSimulator::derive(const double* values, std::vector<double>& numbers) {
   const std::size_t variables = loaded_.study.variables.size(), responses = loaded_.study.responses.size();
   std::copy(values, values + variables, values_.begin());

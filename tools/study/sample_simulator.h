@@ -1,4 +1,4 @@
-// Evaluates one sample: sets the variables in the models, runs them and computes the numbers of interest.
+// Evaluates one sample: sets the variables in the models, runs the models and computes responses and limit states.
 #pragma once
 
 #include "mbd/simulation/simulation.h"
@@ -12,19 +12,19 @@
 
 namespace steplap::study {
 
-/// Outcome of a sample's runs. The values are stored and must not change.
+/// Outcome of a sample. The numeric values are stored in files and must not change.
 enum class SampleStatus : int {
   ok = 0,
   stopped = 1,      ///< an element ended the run: a joint came apart
   untrusted = 2,    ///< the run is complete but cannot be trusted
-  gave_up = 3,      ///< the computation failed or could not start
+  gave_up = 3,      ///< the computation failed, or could not start
   impossible = 4,   ///< the model rejects the values
   not_a_number = 5, ///< a limit state has no value
-  undecided = 6     ///< a limit state is zero to the rounding of runs, so that its sign is not known; its number is zero
+  undecided = 6     ///< a limit state is zero to rounding, so its sign is unknown; the stored number is zero
 };
 [[nodiscard]] const char* name_of(SampleStatus status);
 
-/// Returns the model with the values of all variables that are set in it, not completed. Throws ModelError.
+/// Returns the model with the values of the study's variables, before it is completed. Throws ModelError.
 [[nodiscard]] Model model_with(const LoadedStudy& loaded, const StudyModel& model, const double* values);
 
 /// Results of one sample.
@@ -32,9 +32,9 @@ struct Outcome {
   SampleStatus status = SampleStatus::ok;
   std::string reason;
   std::vector<double> numbers; ///< responses, then limit states; NaN if unknown
-  std::vector<double> curve;   ///< values at the measured times of all histories, one after the other
-  double error = 0.0;          ///< energy residual relative to the energy exchanged; largest over the models
-  double evaluations = 0.0;    ///< evaluations of the equations of motion
+  std::vector<double> curve;   ///< channel values at the measured times of all histories, one history after another
+  double error = 0.0;          ///< largest energy residual over the models, relative to the exchanged energy
+  double evaluations = 0.0;    ///< number of evaluations of the equations of motion
   double cpu_seconds = 0.0;
 };
 
@@ -46,7 +46,7 @@ public:
   /// Runs a sample. Failures of the sample do not throw; they are part of the outcome.
   void run(const double* values, Outcome& outcome);
 
-  /// Returns true if all numbers defined by formulas agree with these formulas, for a stored outcome.
+  /// Returns true if recomputing the formulas gives the numbers of a stored outcome.
   [[nodiscard]] bool is_derived(const std::vector<double>& values, const Outcome& outcome);
 
   ~SampleSimulator();
@@ -66,10 +66,10 @@ private:
   int derive(const double* values, std::vector<double>& numbers);
 
   const LoadedStudy& loaded_;
-  std::vector<std::unique_ptr<SharedRunData>> runners_;         ///< one per model
-  std::vector<std::pair<std::size_t, Expression>> expressions_; ///< formulas, with the index of the number that they define
-  std::vector<std::size_t> measured_;                           ///< indices of the responses whose values have the rounding of a run
-  std::vector<double> values_;                                  ///< values of variables and numbers
+  std::vector<std::unique_ptr<SharedRunData>> runners_;         ///< shared data of each model
+  std::vector<std::pair<std::size_t, Expression>> expressions_; ///< formulas, each with the index of the number that it computes
+  std::vector<std::size_t> measured_;                           ///< indices of responses that have rounding errors
+  std::vector<double> values_;                                  ///< buffer: values of variables, then of numbers
 };
 
 } // namespace steplap::study

@@ -8,7 +8,7 @@ namespace steplap::study {
 
 namespace {
 
-// Returns the probability of the less probable outcome, failure or survival. Runs without a result carry no information.
+// Returns the fraction of failures with its standard deviation and confidence intervals (Clopper and Pearson).
 Share counted(double failures, double samples, const SamplingTarget& target) {
   const double p = failures / samples;
   return {p, std::sqrt(p * (1.0 - p) / samples), proportion_interval(failures, samples, target.confidence),

@@ -6,19 +6,21 @@
 
 namespace steplap::study {
 
-/// A probability. Runs without a result count as safe in `safe` and as failures in `unsafe`.
+/// Estimate of a probability. `safe` counts runs without a result as survivals, `unsafe` as failures.
 struct Estimate {
   std::string method;
   double safe = 0.0, unsafe = 0.0;
   Interval safe_interval, unsafe_interval;
-  Interval safe_test, unsafe_test;                      ///< intervals of higher confidence, for comparison with other estimates
-  double cov = std::numeric_limits<double>::infinity(); ///< coefficient of variation of the less probable outcome, failure or survival
+  Interval safe_test, unsafe_test; ///< intervals with a higher confidence, for comparisons with other estimates
+  /// coefficient of variation of the probability of failure, or of survival if that is smaller
+  double cov = std::numeric_limits<double>::infinity();
   long samples = 0, bad = 0;
   std::string status;
   bool is_target_met = false;
   bool is_trusted = true;
 
-  /// Returns the interval for the study's treatment of failed runs. `failed` is "safe", "unsafe", or another word for bounds of both.
+  /// Returns the interval according to the setting `failed`: "safe" or "unsafe" select that treatment of runs without a result; another
+  /// word gives the interval that contains both.
   [[nodiscard]] Interval interval(const std::string& failed) const {
     return {failed == "unsafe" ? unsafe_interval.low : safe_interval.low, failed == "safe" ? safe_interval.high : unsafe_interval.high};
   }
@@ -27,7 +29,7 @@ struct Estimate {
   }
 };
 
-/// End criteria of a sampling method.
+/// Conditions that end the sampling.
 struct SamplingTarget {
   double cov = 0.05;
   long samples = 100000;
@@ -38,18 +40,18 @@ struct SamplingTarget {
 
 /// Crude Monte Carlo: the fraction of failing samples.
 [[nodiscard]] Estimate monte_carlo(LimitFunction& limit, const SamplingTarget& target);
-/// Samples around the design points; there must be at least one. Works in two stages: the first, whose samples are not counted, determines
-/// the number of samples of the second. The estimate then does not influence when sampling ends, which would bias it.
+/// Importance sampling around the design points, of which there must be at least one. A first stage determines the number of samples of the
+/// second and is then discarded; otherwise the estimate would influence the end of sampling and be biased.
 ///
-/// A part of the samples is widely spread. If one of them fails far from all design points, a new search begins there, and sampling
-/// restarts with the point found. If survival is less probable than failure around the design points, the probability of survival is
-/// estimated and subtracted from one.
+/// The sampling density has a wide component. If one of its samples fails far from all design points, a new search starts there, and
+/// sampling restarts with the point found. If survival is less probable than failure around the design points, the probability of survival
+/// is estimated instead.
 [[nodiscard]] Estimate importance_sampling(LimitFunction& limit, DesignPoints& design, const SamplingTarget& target);
-/// Samples along rays in random directions, at one random point in each stratum of the radius. Whether the point fails estimates the
-/// stratum's contribution without bias, for any shape of the failure region. Works in two stages, like importance_sampling().
+/// Directional simulation: samples along rays in random directions, with one random point in each stratum of the distance. The estimate is
+/// unbiased for any shape of the failure region. Works in two stages, like importance_sampling().
 [[nodiscard]] Estimate directional(LimitFunction& limit, const SamplingTarget& target);
-/// Uses nested levels, each a given fraction of the previous one, and repeats the whole `repetitions` times; the scatter gives the
-/// interval. If values are equal, so that no further level exists, failures are counted directly.
+/// Subset simulation: nested levels, each with a given fraction of the previous one's probability. Repeats the whole simulation
+/// `repetitions` times; their scatter gives the interval. Failures are counted directly if equal values prevent a further level.
 [[nodiscard]] Estimate subset_simulation(LimitFunction& limit, const SamplingTarget& target);
 
 /// Adds the findings of an estimate to the answer.

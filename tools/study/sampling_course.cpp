@@ -50,8 +50,8 @@ void SamplingCourse::say_why_it_ended(Estimate& e) const {
 }
 
 long SamplingCourse::planned(long drawn, double cov) const {
-  // Adds 10 %, so that an underestimated scatter seldom requires another stage. As long as little is known, the number is at most eight
-  // times the present one.
+  // The number is increased by 10 %, so that an underestimated scatter seldom requires another stage. It is at most eight times the present
+  // number, because an early estimate of the scatter is poor.
   constexpr double k_margin = 1.1, k_most = 8.0;
   const double n = static_cast<double>(drawn), times = std::isfinite(cov) ? k_margin * std::pow(cov / target_.cov, 2) : k_most;
   return static_cast<long>(std::ceil(n * std::min(times, k_most)));

@@ -6,7 +6,7 @@
 
 namespace steplap::study {
 
-/// An estimated mean, or its complement to one, as a probability.
+/// An estimated probability with its interval.
 struct Share {
   double p = 0.0, deviation = std::numeric_limits<double>::infinity();
   Interval interval, test;
@@ -19,7 +19,7 @@ class SamplingCourse {
 public:
   SamplingCourse(LimitFunction& limit, const SamplingTarget& target);
 
-  /// Returns true if no sample is left or the time is over.
+  /// Returns true if the limit on samples or on time is reached.
   [[nodiscard]] bool is_over() { return is_late() || left() <= 0; }
   [[nodiscard]] bool is_late();
   /// Returns the number of samples used so far.
@@ -28,10 +28,9 @@ public:
   /// Returns the number of samples per batch. It depends on the study only.
   [[nodiscard]] std::size_t block() const { return block_; }
 
-  /// Sets both bounds. The coefficient of variation refers to the less probable outcome: if nearly all samples fail, the probability of
-  /// survival is the uncertain one.
+  /// Sets both bounds of `e` and their coefficient of variation, which refers to failure or survival, whichever is less probable.
   void set(Estimate& e, const Share& safe, const Share& unsafe) const;
-  /// Stores the intermediate estimate. The coefficient of variation is assumed to decrease with the square root of the number of samples.
+  /// Stores an intermediate estimate. The samples still needed are predicted from cov ∝ 1/√n.
   void note(Estimate& e);
   void say_why_it_ended(Estimate& e) const;
   /// Returns the total number of values required, given the coefficient of variation `cov` of `drawn` values.

@@ -29,7 +29,7 @@ FieldTable sensitivity_fields() {
   return t;
 }
 
-// Returns the numbers of a sample; NaN if its run has no result.
+// Returns responses and limit states of a sample; NaN if the run has no result.
 std::vector<double> numbers_of(const StoredSample& sample, std::size_t count) {
   return sample.outcome.status == SampleStatus::ok ? sample.outcome.numbers : std::vector<double>(count, std::nan(""));
 }
@@ -58,7 +58,7 @@ Derivative derivative_of(const Quotients& q, double noise) {
   const double first = (4.0 * q.central[1] - q.central[0]) / 3.0, second = (4.0 * q.central[2] - q.central[1]) / 3.0;
   d.value = second;
   d.error = std::abs(second - first) + noise;
-  // For a smooth response the one-sided quotients converge to each other in proportion to the step; at a kink they do not.
+  // One-sided quotients of a smooth response converge to each other in proportion to the step. If they do not, there is a kink.
   const double gap = std::abs(q.right[0] - q.left[0]), closer = std::abs(q.right[2] - q.left[2]);
   const double size = std::max({std::abs(q.left[2]), std::abs(q.right[2]), 1e-300});
   if (!std::isfinite(d.value)) d.status = "a run next to the point has no result";
@@ -94,7 +94,7 @@ Answer elasticities(StudyRun& run) {
       Quotients q{};
       for (std::size_t level = 0; level < 3; ++level) {
         const double below = numbers_of(rows[1 + 6 * i + 2 * level], count)[r], above = numbers_of(rows[2 + 6 * i + 2 * level], count)[r];
-        // The step as represented by the floating-point numbers.
+        // Differences of the values actually run, which include the rounding of nominal ± h.
         const double left = nominal[i] - rows[1 + 6 * i + 2 * level].values[i], right = rows[2 + 6 * i + 2 * level].values[i] - nominal[i];
         q.central[level] = (above - below) / (left + right);
         q.left[level] = (here - below) / left;
@@ -123,9 +123,9 @@ void values_at_cube(const StudyRun& run, const std::vector<double>& cube, std::v
   const std::size_t n = run.law.dimension();
   std::vector<double> u(n), values(run.law.nominal().size());
   for (std::size_t d = 0; d < n; ++d)
-    u[d] = normal_quantile(std::clamp(cube[d], 0.01, 0.99)); // limits the tails of unbounded distributions
+    u[d] = normal_quantile(std::clamp(cube[d], 0.01, 0.99)); // excludes the tails of unbounded distributions
   run.law.values_at(u.data(), values.data());
-  for (std::size_t d = 0; d < n; ++d) { // ranges are bounded
+  for (std::size_t d = 0; d < n; ++d) { // variables with a range instead of a distribution
     const std::size_t i = run.law.random()[d];
     const Variable& v = run.study().variables[i];
     if (!v.has_distribution()) values[i] = v.range[0] + cube[d] * (v.range[1] - v.range[0]);
@@ -154,9 +154,10 @@ struct Trajectories {
     std::size_t variable;
     double sign;
   };
-  double jump = 0.0;                    // change of a variable, as a fraction of its range
-  std::vector<double> points;           // values of all variables; each trajectory has one more point than moves
-  std::vector<std::vector<Move>> moves; // per trajectory
+  double jump = 0.0; // change of a variable per move, as a fraction of its range
+  // values of all variables at all points, trajectory by trajectory; each has one point more than moves
+  std::vector<double> points;
+  std::vector<std::vector<Move>> moves; // moves of each trajectory
 };
 
 Trajectories drawn_trajectories(const StudyRun& run, const SensitivitySettings& s) {
@@ -169,7 +170,8 @@ Trajectories drawn_trajectories(const StudyRun& run, const SensitivitySettings& 
     std::vector<double> cube(n);
     std::vector<Trajectories::Move> moves(n);
     for (std::size_t d = 0; d < n; ++d) {
-      cube[d] = std::floor(draw(d) * p / 2.0) / (p - 1.0); // lower half; the upper half is reached by moves in the other direction
+      // a point in the lower half of the levels; moves in the other direction start in the upper half
+      cube[d] = std::floor(draw(d) * p / 2.0) / (p - 1.0);
       moves[d] = {d, draw(n + d) < 0.5 ? -1.0 : 1.0};
       if (moves[d].sign < 0.0) cube[d] += jump;
     }
@@ -184,7 +186,8 @@ Trajectories drawn_trajectories(const StudyRun& run, const SensitivitySettings& 
   return drawn;
 }
 
-// Returns the effects for each number and variable. `missing` receives the number of unknown effects.
+// Returns the elementary effects of each variable on each number: the signed change divided by `jump`. Unknown effects are counted in
+// `missing`.
 std::vector<std::vector<Effects>> effects_of(const Trajectories& drawn, const std::vector<StoredSample>& rows, std::size_t count,
                                              std::size_t n, long& missing) {
   std::vector<std::vector<Effects>> effects(count, std::vector<Effects>(n));

@@ -17,9 +17,9 @@ namespace steplap::study {
 
 namespace {
 
-// Stores with other layouts are rejected.
+// Version of the database layout. Other versions are rejected.
 constexpr int k_layout = 2;
-constexpr int k_application = 0x73746c70; // "stlp", in the header of the file
+constexpr int k_application = 0x73746c70; // application id in the header of the file, "stlp"
 
 std::string quoted(const std::string& name) { return "\"" + name + "\""; }
 
@@ -105,13 +105,15 @@ void Store::flush() {
   committed_ = now();
 }
 
-// Small batches share a transaction, because each commit to disk takes some hundredths of a second.
+// Commits when half a second has passed since the last commit. Each takes some hundredths of a second, so small batches share a
+// transaction.
 void Store::commit_if_due() {
-  constexpr double k_due = 0.5; // s
+  constexpr double k_due = 0.5; // interval between commits, s
   if (now() - committed_ > k_due) flush();
 }
 
-// Uses a separate lock file, because SQLite's lock would also exclude readers. The lock file stays open as long as the database.
+// Locks the store against other writers. A separate lock file is used, because SQLite's lock would also exclude readers. It stays open as
+// long as the database.
 void Store::lock() {
   lock_file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_file_ < 0) throw StoreError(path_, "the store '" + path_ + "' cannot be written: " + std::string(std::strerror(errno)));
@@ -119,8 +121,7 @@ void Store::lock() {
     throw StoreError(path_, "another process is writing to the store '" + path_ + "': wait for it, or choose another store");
 }
 
-// Returns true if a process was killed, or the disk was full, during a write. The incomplete transaction must be rolled back, which
-// requires write access.
+// Returns true if an interrupted write (killed process, full disk) left an incomplete transaction. Rolling it back requires write access.
 bool Store::is_cut_off() {
   sqlite3_exec(database_, "SELECT 1 FROM sqlite_master LIMIT 1", nullptr, nullptr, nullptr);
   return sqlite3_extended_errcode(database_) == SQLITE_READONLY_ROLLBACK;
@@ -132,20 +133,20 @@ void Store::open(const std::string& path, bool is_writing) {
   else if (!std::filesystem::exists(path)) throw StoreError(path, "there is no store '" + path + "'");
   const int flags = is_writing ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   if (sqlite3_open_v2(path.c_str(), &database_, flags, nullptr) != SQLITE_OK) fail("opened");
-  if (!is_writing && is_cut_off()) { // opens once for writing, which rolls back the incomplete batch
+  if (!is_writing && is_cut_off()) { // opening with write access rolls back the incomplete batch
     sqlite3_close(database_);
     if (sqlite3_open_v2(path.c_str(), &database_, SQLITE_OPEN_READWRITE, nullptr) != SQLITE_OK) fail("opened");
   }
-  constexpr int k_patience = 10000; // ms; maximum wait for another process
+  constexpr int k_patience = 10000; // longest wait for another process, ms
   sqlite3_busy_timeout(database_, k_patience);
-  // Unknown names are errors and never treated as text; SQL stored in the file is not executed.
+  // Rejects unknown names, which SQLite would otherwise treat as texts, and does not execute SQL stored in the file.
   sqlite3_db_config(database_, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
   sqlite3_db_config(database_, SQLITE_DBCONFIG_DQS_DDL, 0, nullptr);
   sqlite3_db_config(database_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_exec(database_, "PRAGMA cell_size_check = ON", nullptr, nullptr, nullptr);
 }
 
-// Returns true if nothing has been written, or if the first write was incomplete.
+// Returns true if the file contains no complete transaction.
 bool Store::is_empty() {
   Statement s(*this, "SELECT count(*) FROM sqlite_master");
   return s.step() && s.integer(0) == 0 && pragma("application_id") == 0;
@@ -200,7 +201,7 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
                        {StoreMode::changed, StoreMode::restart});
     set("study", identity.study);
     set("kind", identity.kind);
-    // Earlier findings belong to the previous version of the study and are removed until they are recomputed.
+    // Findings of an earlier version of the study are invalid until they are recomputed.
     for (const char* table : {"growth", "finding", "note"}) execute("DELETE FROM " + quoted(table));
     set("standing", "");
     set("changed", "its samples may be of the study as it was before");
@@ -209,7 +210,7 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
   set("files", files_text(identity));
 }
 
-// Returns the files of the store that have changed since, for a message.
+// Returns the names of input files that changed since the store was written, for a message.
 std::string Store::changed_files(const StoreIdentity& now) {
   std::string text;
   const std::string before = setting("files");
@@ -296,7 +297,7 @@ void Store::describe(const std::string& about) {
 
 void Store::hold() {
   execute("BEGIN");
-  read_identity(); // takes the lock and reads the current size
+  read_identity(); // locks the store and reads the number of samples
 }
 
 void Store::check_kind() {
@@ -390,7 +391,7 @@ void Store::append(const StoredSample* rows, std::size_t count) {
   commit_if_due();
 }
 
-// Recomputes the fingerprint of a batch from which samples are removed.
+// Deletes the samples from `number` on. Recomputes the fingerprint of a batch that is partly deleted.
 void Store::forget_from(long number) {
   if (number > size_) return;
   begin();

@@ -14,18 +14,18 @@ struct sqlite3_stmt;
 
 namespace steplap::study {
 
-/// Treatment of an existing store. run: continue, unless the study has changed; changed: continue even then, with the samples that remain
-/// valid; restart: delete all samples.
+/// Treatment of an existing store. run: continue; throw if the study has changed. changed: continue even then, with the samples that are
+/// still valid. restart: delete all samples.
 enum class StoreMode { run, changed, restart };
 
 /// Thrown if the store cannot be used, with reason and remedy. Exit code 2.
 class StoreError : public FileError {
 public:
-  /// `helps` are the modes in which the store could still be used.
+  /// `helps` lists the modes with which the store could be used.
   StoreError(std::string path, const std::string& message, std::vector<StoreMode> helps = {})
       : FileError(std::move(path), message), helps_(std::move(helps)) {}
 
-  /// Returns the modes in which the store could still be used.
+  /// Returns the modes with which the store could be used.
   [[nodiscard]] const std::vector<StoreMode>& helps() const { return helps_; }
 
 private:
@@ -34,13 +34,13 @@ private:
 
 /// Identity of a study in a store.
 struct StoreIdentity {
-  std::string version; ///< program version
-  std::string study;   ///< text of the study file, including extended files
+  std::string version; ///< version of the program that wrote the store
+  std::string study;   ///< text of the study file and of the files it extends
   std::string kind;
-  std::string scene;                           ///< everything that determines a sample's numbers: models, variables, responses, limit
-                                               ///< states
-  std::vector<std::string> variables, numbers; ///< column names
-  bool has_curves = false;                     ///< samples contain the run's values at measured times
+  /// text of everything that affects the numbers of a sample: models, variables, responses, limit states
+  std::string scene;
+  std::vector<std::string> variables, numbers; ///< column names of the samples
+  bool has_curves = false;                     ///< true if samples contain the channel values at measured times
   std::vector<InputFile> files{};              ///< all files from which study and models were read
 };
 [[nodiscard]] StoreIdentity identity_of(const LoadedStudy& loaded);
@@ -66,21 +66,21 @@ public:
   [[nodiscard]] const StoreIdentity& identity() const { return identity_; }
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] long size() const { return size_; } ///< number of samples
-  /// Returns true if the study was changed and has not been completed since: some samples may belong to the earlier version.
+  /// Returns true if the study was changed and not completed since. Some samples may then belong to the earlier version.
   [[nodiscard]] bool may_hold_others() { return !setting("changed").empty(); }
-  /// Reads rows first … first + count − 1, which must exist.
+  /// Reads samples number `first` to `first` + `count` − 1, which must exist.
   void read(long first, long count, std::vector<StoredSample>& rows);
   /// Appends samples. They are on disk after half a second, or at the next append(), note() or flush() after that.
   void append(const StoredSample* rows, std::size_t count);
   void flush();
   /// Deletes all samples from `number` on.
   void forget_from(long number);
-  /// Stores an intermediate estimate with its consecutive number `place`.
+  /// Stores intermediate estimate number `place`, counted from 1.
   void note(long place, const Finding& finding);
-  /// Point of a measured record with the fitted value.
+  /// A point of a measured record with the fitted value at that time.
   struct CurvePoint {
     std::string history;
-    double t = 0.0, measured = 0.0, fitted = 0.0; ///< s; in the unit of the channel
+    double t = 0.0, measured = 0.0, fitted = 0.0; ///< time, s; measured and fitted value, in the unit of the channel
   };
   /// Replaces the measured records with their fitted values.
   void set_histories(const std::vector<CurvePoint>& points);
@@ -91,15 +91,16 @@ public:
   /// Returns the intermediate estimates.
   [[nodiscard]] std::vector<Finding> growth();
   [[nodiscard]] std::vector<std::string> notes();
-  [[nodiscard]] std::string setting(const std::string& key); ///< "" if it does not exist
+  [[nodiscard]] std::string setting(const std::string& key); ///< returns "" if the key does not exist
   /// Stores the description made by report_about.h. It is not part of the identity.
   void describe(const std::string& about);
-  /// Starts a read transaction: later reads see the present contents, whatever another process writes.
+  /// Starts a read transaction: all later reads see the present contents, even if another process writes.
   void hold();
-  /// Returns how many samples have a value for number i. Below: the value at position `place`, from 0, in sorted order.
+  /// Returns the number of samples in which number i has a value. order_statistic() returns the value at position `place`, from 0, in
+  /// ascending order.
   [[nodiscard]] long count_of(std::size_t i);
   [[nodiscard]] double order_statistic(std::size_t i, long place);
-  /// Frequency of a status with its most frequent reason and the first sample.
+  /// A status of failed runs with one reason, its frequency, and the number of its first sample.
   struct Reason {
     std::string status, reason;
     long count = 0, first = 0;
@@ -107,7 +108,7 @@ public:
   [[nodiscard]] std::vector<Reason> reasons();
 
 private:
-  Store() = default; ///< delegated to by the others, so that open files are closed if they throw
+  Store() = default; ///< called by the public constructors first, so that the destructor closes open files if they throw
   struct Statement;
   void open(const std::string& path, bool is_writing);
   bool is_cut_off();
@@ -148,7 +149,7 @@ private:
   int lock_file_ = -1;
   StoreIdentity identity_;
   long size_ = 0;
-  bool is_open_ = false;   ///< true within a transaction
+  bool is_open_ = false;   ///< true within a write transaction
   double committed_ = 0.0; ///< time of the last commit, s
 };
 

@@ -1,7 +1,7 @@
-// Protects a store against damage: fingerprints of all data, and a complete check when it is opened.
+// Detects damage of a store by fingerprints of all data, which are checked whenever it is opened.
 //
-// Samples have one fingerprint per appended batch, all other data one per row. A damaged or manually edited store is rejected, because it
-// is unknown which part is still correct.
+// Samples have one fingerprint per appended batch, all other data one per row. A damaged or manually edited store is rejected as a whole,
+// because the damaged part cannot be determined.
 #include "mbd/base/fingerprint.h"
 #include "tools/study/store_statement.h"
 
@@ -95,7 +95,7 @@ long Store::begin_of_batch(long number) {
 
 void Store::check() {
   const bool is_alone = !is_in_transaction();
-  if (is_alone) execute("BEGIN"); // a consistent state, whatever another process writes
+  if (is_alone) execute("BEGIN"); // reads one consistent state, even if another process writes
   try {
     check_pages();
     check_settings();

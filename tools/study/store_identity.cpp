@@ -1,4 +1,4 @@
-// Determines whether two studies are the same with respect to their samples.
+// Determines whether two versions of a study give the same samples.
 #include "mbd/base/number_text.h"
 #include "mbd/run/version.h"
 #include "tools/study/store.h"

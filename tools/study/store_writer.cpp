@@ -31,7 +31,7 @@ Store& StoreWriter::store() {
   return store_;
 }
 
-// Limits the memory if samples are computed faster than written, as for formulas.
+// Queues a job. Waits if too many samples are queued, which limits the memory; formulas are evaluated faster than written.
 void StoreWriter::add(Job job, std::size_t samples) {
   constexpr std::size_t k_most_samples = 20000;
   std::unique_lock lock(mutex_);

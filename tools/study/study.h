@@ -19,18 +19,18 @@ namespace steplap::study {
 struct Variable {
   std::string name;
   std::vector<std::string> paths; ///< paths in the models; empty: used in expressions only
-  bool is_factor = false;         ///< true if it multiplies the model's value at its paths
-  std::string model;              ///< name of the only model that it affects; "": all
+  bool is_factor = false;         ///< true if the variable multiplies the model's value at its paths
+  std::string model;              ///< name of the only model in which the variable is set; "": all models
   std::vector<double> values;
-  std::vector<double> range; ///< [low, high]
+  std::vector<double> range; ///< [low, high] of the variable
   std::string distribution;
   std::optional<double> mean, standard_deviation, cov;
-  std::optional<double> low, high, mode; ///< parameters of a uniform, triangular or beta distribution
+  std::optional<double> low, high, mode; ///< bounds and mode of a uniform, triangular or beta distribution
   std::optional<double> shape, shape2, scale, location;
-  std::optional<double> lower, upper; ///< truncation of the distribution
-  std::string measured, column;       ///< CSV file to which the distribution is fitted
+  std::optional<double> lower, upper; ///< bounds at which the distribution is truncated
+  std::string measured, column;       ///< CSV file and column of measured values to which the distribution is fitted
   std::optional<double> value;        ///< point around which local studies are made; the model's value if not given
-  std::string unit;                   ///< unit of the values at the paths; otherwise as in the file
+  std::string unit;                   ///< unit of the numbers given; "": the unit of the model's field
   Location where;
 
   [[nodiscard]] bool has_distribution() const { return !distribution.empty(); }
@@ -44,7 +44,7 @@ struct Correlation {
   Location where;
 };
 
-/// Quantity that a response takes from a run.
+/// How a response is computed from a run.
 enum class Measure : std::uint8_t {
   expression,        ///< none: computed from variables and other responses
   highest,           ///< largest value of the channels
@@ -54,32 +54,32 @@ enum class Measure : std::uint8_t {
   initial_value,     ///< value of a channel at the start
   mean,              ///< mean of a channel over the written samples
   path,              ///< sum of a channel's absolute changes over the written samples
-  event_count,       ///< number of events
+  event_count,       ///< number of events that match
   first_event,       ///< time of the first event, s
   verdict,           ///< 0 hold, 1 open, 2 inspect, 3 reject
-  reserve            ///< remaining reserve of all limits (mbd/run/utilisation.h); negative unless the verdict is "hold"
+  reserve            ///< smallest reserve of all limits (mbd/run/utilisation.h); negative unless the verdict is "hold"
 };
 
 /// Returns true for extremes of channels.
 [[nodiscard]] constexpr bool is_extreme(Measure m) {
   return m == Measure::highest || m == Measure::lowest || m == Measure::largest_magnitude;
 }
-/// Returns true if it needs the judgement of the run.
+/// Returns true if the response needs the verdict or the limits of the run.
 [[nodiscard]] constexpr bool is_judged(Measure m) { return m == Measure::verdict || m == Measure::reserve; }
-/// Returns true if it needs the samples that a run writes.
+/// Returns true if the response needs the output samples of the run.
 [[nodiscard]] constexpr bool needs_samples(Measure m) { return m == Measure::mean || m == Measure::path; }
 
 /// [[response]]: a number computed for each run.
 struct Response {
   std::string name;
-  std::string model;                     ///< name of the model from which it is taken; required if there are several
+  std::string model;                     ///< name of the model that is run; required if there are several
   std::string channel;                   ///< pattern with * and ?
   std::string what;                      ///< highest, lowest, largest, final, initial, mean, path, time_of_highest, ...
-  Measure measure = Measure::expression; ///< the enumerator for `what`
-  bool takes_time = false;               ///< for an extreme: true to take its time, s, instead of its value
+  Measure measure = Measure::expression; ///< value of `what`
+  bool takes_time = false;               ///< true if a response takes the time of an extreme, s, instead of its value
   std::string event, element;            ///< patterns of events that are counted or timed
   std::optional<double> otherwise;       ///< value of the time if the event never happens; infinity if not given
-  std::string expression;                ///< of variables and of earlier responses
+  std::string expression;                ///< formula of variables and earlier responses
   std::string unit;
   Location where;
 };
@@ -89,10 +89,10 @@ struct History {
   std::string name;
   std::string model;                    ///< required if there are several models
   std::string channel;                  ///< name of the channel
-  std::string file;                     ///< CSV
+  std::string file;                     ///< path of the CSV file
   std::string time = "1", column = "2"; ///< columns, by name or number
   std::string unit, time_unit;          ///< units of the columns; "": the channel's unit, seconds
-  std::string noise_text;               ///< as given
+  std::string noise_text;               ///< noise as given in the file
   std::optional<double> from, to;       ///< s; rows outside are ignored
   std::optional<double> noise;          ///< standard deviation of the measurement, in the channel's unit
   std::string channel_unit;
@@ -100,35 +100,34 @@ struct History {
   Location where;
 };
 
-/// [[limit_state]]: failure means that its expression is negative.
+/// [[limit_state]]: a sample fails if the expression is negative.
 struct LimitState {
   std::string name;
   std::string expression;
   Location where;
-  bool is_border = false; ///< true if a study kind searches its zeros, which are no failures
+  bool is_border = false; ///< true if the study kind searches zeros of the expression, which are not failures
 };
 
-/// [[evidence]]: loads of the past that the system has held, or not. Variables that are neither drawn anew nor set had the values in them
-/// that they still have.
+/// [[evidence]]: past loads in which the system held, or failed. Variables not listed in `anew` or `settings` had the same values as now.
 struct Evidence {
   bool is_held = true;
-  long times = 1;                             ///< number of such loads
-  std::vector<std::string> anew;              ///< variables with independent values in each load
-  std::vector<std::string> settings;          ///< "variable=value" of values that were measured, as given
-  std::vector<std::pair<int, double>> values; ///< these: index of the variable, value
-  std::vector<std::string> limit_states;      ///< of which any failed if it was not held; empty: those of the study's system
+  long times = 1;                             ///< number of past loads of this kind
+  std::vector<std::string> anew;              ///< names of variables with independent values in each load
+  std::vector<std::string> settings;          ///< measured values as given: "variable=value"
+  std::vector<std::pair<int, double>> values; ///< variables with measured values: index, value
+  std::vector<std::string> limit_states;      ///< limit states of the past loads; empty: all of the study's system
   Location where;
 };
 
-/// Settings in the table of a study kind; each kind derives its own (study_kind.h).
+/// Settings of a study kind, read from its table. Each kind derives its own type (study_kind.h).
 struct KindSettings {
-  Location where; ///< location of the table, or of the study if it has none
+  Location where; ///< location of the kind's table, or of the study if there is none
 
   KindSettings() = default;
   KindSettings(const KindSettings&) = default;
   KindSettings& operator=(const KindSettings&) = default;
   virtual ~KindSettings() = default;
-  /// Returns true if the samples requested depend on computing time.
+  /// Returns true if computing time decides when the study ends, so that repetitions differ.
   [[nodiscard]] virtual bool ends_by_clock() const { return false; }
 };
 
@@ -138,9 +137,9 @@ struct Study {
   std::string text;
   std::string title;
   std::string kind;
-  std::vector<std::string> models; ///< file paths
+  std::vector<std::string> models; ///< paths of the model files
   long seed = 1;
-  std::string failed = "bounds"; ///< how runs that do not reach their end are counted
+  std::string failed = "bounds"; ///< how runs without a result are counted: bounds, safe, unsafe, or stop
   std::vector<Variable> variables;
   std::vector<Correlation> correlations;
   std::vector<Response> responses;

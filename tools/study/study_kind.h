@@ -14,29 +14,29 @@
 
 namespace steplap::study {
 
-/// How samples were drawn from the distributions of the variables: independently, by a design, or otherwise (searches, lines, grids), for
-/// which no distribution can be shown.
+/// How samples were drawn: independently from the distributions, from them by a design such as Latin hypercube, or otherwise (searches,
+/// lines, grids). Distributions are not shown for the last kind.
 enum class Drawn { independently, by_design, otherwise };
 
-/// Settings of a study as stored for the page: the texts of each shown field; empty if a field is not a text.
+/// Settings of a study as stored for its page: the texts of each field, by name. The list is empty for numbers.
 using ShownSettings = std::map<std::string, std::vector<std::string>>;
 
 /// Description and functions of one kind.
 struct StudyKind {
-  std::string name; ///< also the name of its table
+  std::string name; ///< name of the kind, and of its table in the study file
   std::string doc;
   FieldTable fields; ///< fields of its table
   std::shared_ptr<KindSettings> (*create)() = nullptr;
-  std::vector<std::string> shown{};  ///< fields of its table that the page shows
-  bool takes_histories = false;      ///< true if it uses measured records
-  bool takes_evidence = false;       ///< true if it uses loads of the past
-  bool draws_jointly = false;        ///< true if variables are drawn with their correlations, not set one by one
-  bool seeks_a_mean = false;         ///< true if a variable may have a distribution and the values that are tried for its mean
-  bool begins_with_sentence = false; ///< true if the first note of the answer is the answer as a sentence
-  bool shows_running_means = false;  ///< true if samples are independent: the page shows how failure fractions and means converge
+  std::vector<std::string> shown{};  ///< names of the settings that the page shows
+  bool takes_histories = false;      ///< true if the kind uses measured records
+  bool takes_evidence = false;       ///< true if the kind uses past loads
+  bool draws_jointly = false;        ///< true if variables are drawn from their joint distribution with correlations, not set one by one
+  bool seeks_a_mean = false;         ///< true if the searched variable may be the mean of a distribution
+  bool begins_with_sentence = false; ///< true if the first note of the answer is a complete sentence with the result
+  bool shows_running_means = false;  ///< true if samples are independent, so that the page can show the convergence of fractions and means
   std::vector<FindingPart> parts{};  ///< presentation of its findings, by quantity
   std::vector<PointRole> points{};   ///< findings that are points in the space of the variables
-  /// Adds required data that is not in the file: limit states, variables, variants of the model.
+  /// Adds data that the kind needs and the file does not contain: limit states, variables, variants of models. May be nullptr.
   void (*prepare)(LoadedStudy& loaded) = nullptr;
   /// Appends errors of the study for this kind to `problems`. Called before anything runs.
   void (*check)(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) = nullptr;
@@ -44,7 +44,7 @@ struct StudyKind {
   /// Returns how samples were drawn, for the page. nullptr means Drawn::otherwise.
   Drawn (*drawn)(const ShownSettings& settings) = nullptr;
 
-  /// Declares that its settings are of type T.
+  /// Sets T as the type of the kind's settings.
   template <class T> void holds() {
     create = []() -> std::shared_ptr<KindSettings> { return std::make_shared<T>(); };
   }
@@ -56,7 +56,7 @@ struct StudyKind {
   return found != settings.end() && found->second == std::vector<std::string>{text};
 }
 
-/// Returns the address that the field table expects: that of the most derived settings object.
+/// Returns the address of the most derived settings object, which the field table expects.
 [[nodiscard]] inline void* fields_of(KindSettings& settings) { return dynamic_cast<void*>(&settings); }
 [[nodiscard]] inline const void* fields_of(const KindSettings& settings) { return dynamic_cast<const void*>(&settings); }
 

@@ -39,7 +39,7 @@ std::string list_text(const std::vector<std::string>& names) {
   return text;
 }
 
-// Returns the kinds that take something, in words.
+// Returns the names of all kinds with this property, for a message.
 std::string kinds_with(bool StudyKind::*takes) {
   std::string text;
   for (const StudyKind& kind : study_kinds())
@@ -68,7 +68,7 @@ public:
 
   LoadedStudy read() {
     read_header();
-    stop_if_wrong(); // later checks use the models
+    stop_if_wrong(); // throws if there are errors so far, because later checks need valid models
     load_models();
     stop_if_wrong();
     read_array("variable", [this](Node& entry) { read_variable(entry); });
@@ -86,7 +86,7 @@ public:
     check_names();
     const bool are_names_right = problems_.size() == known;
     find_nominal();
-    if (are_names_right) check_expressions(); // otherwise expressions would report errors caused by wrong names
+    if (are_names_right) check_expressions(); // with wrong names, expressions would give misleading errors
     stop_if_wrong();
     check_values();
     stop_if_wrong();
@@ -105,7 +105,7 @@ private:
     throw ModelError(problems_);
   }
 
-  // Reads the fields with their ranges; keys with several possible types are handled by the table.
+  // Reads the fields of a table and checks their ranges. Fields that accept several types are read separately.
   void read_table(const Node& table, const FieldTable& fields, void* object, TableReading reading) {
     const std::size_t before = problems_.size();
     const std::vector<GivenField> given = read_fields(table, fields, object, reading, problems_);
@@ -182,7 +182,8 @@ private:
     read_table(*table, kind.fields, fields_of(*settings), reading);
   }
 
-  // Returns the common unit of all paths of a variable, found in the models; "*" if any is accepted.
+  // Returns the unit of a variable: that of the fields at its paths in the models, or the unit given in the study. Returns "*" if any is
+  // accepted.
   std::string unit_of_paths(const Node& entry, Variable& v) {
     const Node* paths = entry.find("path");
     const Node* model = entry.find("model");
@@ -269,11 +270,11 @@ private:
     study_.responses.push_back(std::move(r));
   }
 
-  // `what` is one of the field's choices: other values have been rejected, and `measure` is then unchanged.
+  // Sets `measure` from the text `what`. Leaves it unchanged for texts that the field table has already rejected.
   static void set_measure(Response& r) {
     struct Named {
       Measure measure;
-      bool takes_time = false; // of the extreme, instead of its value
+      bool takes_time = false; // true: the response is the time of the extreme
     };
     static const std::map<std::string, Named> measures = {{"highest", {Measure::highest}},
                                                           {"lowest", {Measure::lowest}},
@@ -349,7 +350,7 @@ private:
       Model everything = completed(model.given);
       everything.output.also = {"*"};
       return !channels_of(r, *compile(everything)).empty();
-    } catch (const ModelError&) { // reported where the model is read
+    } catch (const ModelError&) { // the error is reported when the model is read
       return false;
     }
   }

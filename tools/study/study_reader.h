@@ -11,32 +11,32 @@
 
 namespace steplap::study {
 
-/// A model of a study: as given, for setting values, and once completed and compiled for checks.
+/// A model of a study: as given, to which values of variables are applied, and completed and compiled, for checks.
 struct StudyModel {
   std::string path, name;             ///< name: file name without extension, or name of the load case
-  std::string file_name;              ///< for a load case: name of the model whose case it is
-  std::optional<LoadCase> load;       ///< set for a load case; its criteria apply
+  std::string file_name;              ///< name of the model file, for a load case
+  std::optional<LoadCase> load;       ///< the load case, if it is one; the criteria of this case apply
   std::vector<std::string> overrides; ///< "path=value" with which the model was read
   Model given;
-  std::string text;             ///< effective model as self-contained TOML
-  std::vector<InputFile> files; ///< files from which it was read: the model, extended files, records
+  std::string text;             ///< self-contained TOML text of the model with overrides and extensions
+  std::vector<InputFile> files; ///< files that were read for the model: the model, extended files, records
   std::unique_ptr<System> system;
-  std::vector<double> base; ///< per variable: value at the first of its paths; NaN if it has none in this model
+  std::vector<double> base; ///< value of each variable's first path in this model; NaN if this model has none
 };
 
-/// A structural change of a model.
+/// A structural change of a model, as used by the study kind "needs".
 struct ModelVariant {
   std::string name;
-  std::function<void(Model&)> apply; ///< modifies the model as given
-  std::string gone{};                ///< name of the element that is removed, if any
+  std::function<void(Model&)> apply; ///< changes the model as given
+  std::string gone{};                ///< name of the removed element; "" if none
 };
 
 /// A study that has been read and checked.
 struct LoadedStudy {
   Study study;
   std::vector<std::shared_ptr<const StudyModel>> models;
-  std::vector<double> nominal;        ///< per variable
-  std::vector<InputFile> files;       ///< files from which the study was read, without its models
+  std::vector<double> nominal;        ///< nominal value of each variable
+  std::vector<InputFile> files;       ///< study file and the files that it extends
   std::vector<ModelVariant> variants; ///< if not empty, the last variable selects the variant, from 1; 0 is the unchanged model
 
   /// Names that expressions may use: variables, then responses, then limit states.
@@ -46,9 +46,9 @@ struct LoadedStudy {
   /// Returns the number of values of all histories.
   [[nodiscard]] std::size_t curve_size() const;
   [[nodiscard]] std::size_t number_count() const { return study.responses.size() + study.limit_states.size(); }
-  /// Returns a record file that has changed since the study was read; "" if there is none.
+  /// Returns the name of a measured record whose file changed since the study was read; "" if none did.
   [[nodiscard]] std::string changed_record() const;
-  /// Returns the index of a response or limit state among the numbers; −1 if there is none.
+  /// Returns the index of a response or limit state in the list of both; −1 if there is none.
   [[nodiscard]] int index_of_number(const std::string& name) const;
 };
 

@@ -1,4 +1,4 @@
-// Objects that a study kind uses when it runs.
+// Data of a running study, passed to its study kind.
 #pragma once
 
 #include "tools/study/evaluator.h"

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Schema for keys that a table does not have. Unlike "false" it lets editors mark the key instead of the table.
+// Returns a schema that accepts no value, for unknown keys. Editors then mark the key; with "false" they mark the whole table.
 const Json& no_other_keys() {
   static const Json schema{{"const", "a field that this table has"}};
   return schema;

@@ -18,31 +18,31 @@ namespace steplap::study {
 namespace {
 
 constexpr double k_share = 0.1;   // probability of a level relative to the previous one
-constexpr double k_least = 1e-30; // smaller probabilities cannot be reached
+constexpr double k_least = 1e-30; // smallest probability that can be reached
 
 struct Repetition {
   double probability = 0.0, cov = 0.0;
-  long failures = 0, samples = 0; ///< of the first level, if it was the only one; otherwise 0
-  bool is_counted = false;        ///< failures were counted in the first level, because no further level existed
+  long failures = 0, samples = 0; ///< counts of the first level if it is the only one; otherwise 0
+  bool is_counted = false;        ///< true if failures were counted in the first level, because no further level existed
   std::string problem;
 };
 
-// Threshold of the next level, and the number of samples below it.
+// Threshold of the next level, and number of samples below it.
 struct Threshold {
   double g = 0.0;
   std::size_t below = 0;
 };
 
-// Returns nothing if no level exists between the samples and failure; failures are then counted.
+// Returns the threshold for the values g. Returns nothing if equal values prevent a level between the samples and failure.
 std::optional<Threshold> next_threshold(std::vector<double> g) {
-  constexpr std::size_t k_fewest = 10; // chains; fewer depend too much on their start points
+  constexpr std::size_t k_fewest = 10; // smallest number of chains; results of fewer depend too much on their starting points
   std::sort(g.begin(), g.end());
   const std::size_t n = g.size(), wanted = std::max(static_cast<std::size_t>(k_share * static_cast<double>(n)), k_fewest);
   const auto at = g.begin() + static_cast<long>(wanted);
   const auto first = std::lower_bound(g.begin(), g.end(), *at), past = std::upper_bound(g.begin(), g.end(), *at);
   const auto below = static_cast<std::size_t>(first - g.begin()), up_to = static_cast<std::size_t>(past - g.begin());
   if (2 * below >= wanted) return Threshold{*at, below};
-  if (past != g.end() && 2 * up_to <= n) return Threshold{*past, up_to}; // includes equal values
+  if (past != g.end() && 2 * up_to <= n) return Threshold{*past, up_to}; // the level includes the samples equal to the threshold
   const auto failing = static_cast<std::size_t>(std::lower_bound(g.begin(), g.end(), 0.0) - g.begin());
   if (below > failing && below >= k_fewest) return Threshold{*at, below};
   return {};
@@ -80,11 +80,10 @@ public:
   }
 
 private:
-  static constexpr std::uint32_t k_stream = 1000; // one stream for each repetition, the same for both bounds, so that they differ only by
-                                                  // the treatment of runs without a result
+  static constexpr std::uint32_t k_stream = 1000; // first stream number; each repetition uses its own stream, shared by both bounds
   static Repetition failed(const char* problem) { return {0.0, 0.0, 0, 0, false, problem}; }
 
-  // Runs without a result count as the worst or the best value.
+  // Returns the limit function at the points. Runs without a result get the smallest or largest value, depending on the bound.
   std::vector<double> values_at(const std::vector<double>& points) {
     constexpr double k_extreme = 1e300;
     std::vector<double> g;
@@ -101,7 +100,8 @@ private:
     chains_ = size_;
   }
 
-  // Starts from all samples below the threshold and advances all chains together: first[i], first[chains + i], … is chain i.
+  // Draws the samples of the next level by Markov chains that start at all samples below the threshold. Samples first[i], first[chains +
+  // i], … form chain i.
   void go_on(const Threshold& level) {
     std::vector<double> u, g;
     for (std::size_t i = 0; i < size_; ++i) {
@@ -127,15 +127,15 @@ private:
         u.insert(u.end(), next.begin(), next.end());
         g.push_back(is_in ? values[i] : g[from + i]);
       }
-      // An acceptance rate of 44 % gives the fastest mixing.
+      // Adapts the step of the proposal to an acceptance rate of 44 %, which mixes fastest.
       width_ = std::clamp(width_ * std::exp(0.5 * (taken / static_cast<double>(count) - 0.44)), 0.05, 1.0);
     }
     u_ = std::move(u);
     g_ = std::move(g);
   }
 
-  // Returns the squared coefficient of variation of the fraction below the threshold. Samples of one chain are correlated (Au and Beck's
-  // gamma, from the correlation along the chains).
+  // Returns the squared coefficient of variation of the fraction below the threshold, including the correlation within chains (γ of Au and
+  // Beck).
   [[nodiscard]] double variation(double threshold, double share) const {
     if (share >= 1.0) return 0.0;
     const std::size_t length = size_ / chains_;
@@ -163,7 +163,7 @@ private:
 
 Share with_test(double p, double cov, const Interval& interval, const Interval& test) { return {p, cov * p, interval, test}; }
 
-// The interval is computed for the logarithm, because probabilities of repetitions vary by factors.
+// Returns the mean of all repetitions. Its interval is computed for the logarithm, because the probabilities differ by factors.
 Share mean_of(const std::vector<Repetition>& all, const SamplingTarget& target) {
   Share nothing;
   nothing.interval = nothing.test = {0.0, 1.0};
@@ -184,7 +184,7 @@ Share mean_of(const std::vector<Repetition>& all, const SamplingTarget& target) 
   double squares = 0.0, inner = 0.0;
   for (const Repetition& r : all) {
     squares += (r.probability - mean) * (r.probability - mean);
-    inner += std::pow(r.cov * r.probability, 2) / n; // variance within each repetition
+    inner += std::pow(r.cov * r.probability, 2) / n; // mean variance within a repetition
   }
   const double cov = std::sqrt(std::max(squares / (n - 1.0), inner) / n) / mean;
   const auto interval = [&](double confidence) {
@@ -194,8 +194,8 @@ Share mean_of(const std::vector<Repetition>& all, const SamplingTarget& target) 
   return with_test(mean, cov, interval(target.confidence), interval(target.test_confidence));
 }
 
-// Reports repetitions without a result. If all have none, the estimate, zero with the bounds 0 and 1, is valid. If only some have
-// none, the mean of the others is not an estimate of the probability and is not trusted.
+// Adds the problems of repetitions without a result. If all have none, the estimate is zero with bounds 0 and 1, which is valid. If only
+// some have none, the mean of the others is biased, so the estimate is not trusted.
 void add_problems(const std::vector<Repetition>& all, Estimate& e) {
   const auto failed = std::count_if(all.begin(), all.end(), [](const Repetition& r) { return !r.problem.empty(); });
   if (failed == 0) return;

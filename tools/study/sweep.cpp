@@ -19,9 +19,9 @@ FieldTable sweep_fields() {
   return t;
 }
 
-constexpr std::size_t k_block = 10000; // samples per request, so that memory does not grow with their number
+constexpr std::size_t k_block = 10000; // largest number of samples per request, which limits the memory
 
-// Returns the values over which a variable is swept.
+// Returns the values of a variable in the sweep.
 std::vector<double> levels_of(const StudyRun& run, std::size_t i) {
   const Variable& v = run.study().variables[i];
   if (!v.values.empty()) return v.values;

@@ -15,10 +15,10 @@ LoadedStudy with_design_value(const LoadedStudy& loaded, std::size_t variable, d
   return changed;
 }
 
-// The study at one value. Its samples are those of the whole study.
+// The study with the design variable set to one value. Its samples belong to the whole study.
 struct TargetSearch::Scene {
   LoadedStudy loaded;
-  std::vector<Diagnostic> problems; // checked before the study runs
+  std::vector<Diagnostic> problems; // must be empty; the reader has checked the study
   JointLaw law;
   StudyRun run;
   LimitFunction limit;
@@ -33,7 +33,7 @@ struct TargetSearch::Scene {
   }
 };
 
-// If no search from the usual starts arrives, one more begins at the design point of the nearest value.
+// Searches design points at x. If the usual starts fail, the design point of the nearest known value is one more start.
 DesignPoints TargetSearch::points_of(Scene& scene, double x) {
   DesignPoints points = find_design_points(scene.limit, false);
   const auto is_found = [&points] { return !points.points.empty() && points.points.front().is_found; };
@@ -65,7 +65,7 @@ IndexEstimate TargetSearch::sampled(double x) {
   }
   last_ = importance_sampling(scene.limit, points, sampling_);
   const auto index_of = [](double p) { return p > 0.0 && p < 1.0 ? -normal_quantile(p) : std::nan(""); };
-  const Interval interval = last_.interval("bounds"); // runs without a result count as failures at one end
+  const Interval interval = last_.interval("bounds"); // runs without a result count as failures in one bound and as survivals in the other
   index.beta = index_of(last_.unsafe);
   index.low = index_of(interval.high);
   index.high = index_of(interval.low);
@@ -74,7 +74,8 @@ IndexEstimate TargetSearch::sampled(double x) {
 }
 
 TargetBorder TargetSearch::border_near(double x, double low, double high) {
-  constexpr double k_near = 0.05; // in β: over so short a distance the curvature of β(x) is negligible compared with the sampling interval
+  // distance in β within which β(x) is treated as linear: its curvature is negligible compared with the sampling interval
+  constexpr double k_near = 0.05;
   constexpr int k_most = 6;
   const double h = 0.005 * (high - low);
   const double before = std::max(low, x - h), after = std::min(high, x + h);

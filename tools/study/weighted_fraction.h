@@ -1,8 +1,8 @@
 // Fraction of weighted samples that fail, with a confidence interval.
 //
-// The estimate is p = Σ w f/Σ w with f = 0 or 1. Its variance, to first order in the scatter of both sums, is Σ w² (f − p)²/(Σ w)². Hall's
-// interval of the mean of w f (weighted_mean.h) has the skewness of rare failures. It is stretched by the ratio of both deviations, because
-// the sum of the weights scatters, too.
+// The estimate is p = Σ w f/Σ w with f = 0 or 1. Its variance, to first order in the scatter of both sums, is Σ w² (f − p)²/(Σ w)². The
+// interval is Hall's interval for the mean of w f (weighted_mean.h), which takes the skewness of rare failures into account, widened by the
+// ratio of the deviations of p and of that mean, because Σ w scatters, too.
 #pragma once
 
 #include "tools/study/weighted_mean.h"
@@ -19,9 +19,9 @@ public:
   [[nodiscard]] double mean() const;
   /// Returns the standard deviation of the mean; infinite as long as fewer than two samples are hits.
   [[nodiscard]] double deviation() const;
-  /// Returns an interval within [0, 1]; the whole of it as long as fewer than two samples are hits.
+  /// Returns the confidence interval within [0, 1]; [0, 1] as long as fewer than two samples are hits.
   [[nodiscard]] Interval interval(double confidence) const;
-  /// Returns the number of samples of equal weight that would say as much, (Σ w)²/Σ w² (Kish), of all and of the hits.
+  /// Returns the effective number of samples, (Σ w)²/Σ w² (Kish): of all samples, and of the hits.
   [[nodiscard]] double effective() const;
   [[nodiscard]] double effective_hits() const;
 

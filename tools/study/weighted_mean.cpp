@@ -34,7 +34,7 @@ Interval WeightedMean::interval(double confidence) const {
   const double third = cubes_ / n - 3.0 * m * squares_ / n + 2.0 * m * m * m;
   const double skewness = third / (variance * std::sqrt(variance));
   const double y = student_quantile(static_cast<double>(hits_ - 1), 0.5 * (1.0 + confidence)) / std::sqrt(n);
-  // T is a shifted cube: T - k/(6 n) = ((1 + k W/3)³ - 1)/k.
+  // T is a shifted cube of W, T − k/(6 n) = ((1 + k W/3)³ − 1)/k, and can therefore be inverted in closed form.
   const auto inverse = [&](double t) {
     const double x = skewness * (t - skewness / (6.0 * n));
     return std::abs(skewness) * y > 1e-6 ? 3.0 * (std::cbrt(1.0 + x) - 1.0) / skewness : t;

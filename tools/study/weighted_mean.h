@@ -23,9 +23,9 @@ public:
   [[nodiscard]] double mean() const;
   /// Returns the standard deviation of the mean; infinite as long as fewer than two values are above zero.
   [[nodiscard]] double deviation() const;
-  /// Returns the fraction of the sum due to the largest value.
+  /// Returns the largest value divided by the sum.
   [[nodiscard]] double largest_share() const;
-  /// Returns an interval within [0, 1]; the whole of it as long as fewer than two values are above zero.
+  /// Returns the confidence interval within [0, 1]; [0, 1] as long as fewer than two values are above zero.
   [[nodiscard]] Interval interval(double confidence) const;
 
 private:

@@ -201,13 +201,13 @@ void Drawing::dimension_elevation(SheetPanel& panel, const std::vector<Limb>& al
 }
 
 // Layers of the section as drawn: packets separated by ducts.
-struct Slab {
+struct SectionLayer {
   double width, low, high;
   std::size_t packet;
 };
 
-std::vector<Slab> slabs_of(const Stack& stack) {
-  std::vector<Slab> slabs;
+std::vector<SectionLayer> slabs_of(const Stack& stack) {
+  std::vector<SectionLayer> slabs;
   std::vector<Duct> ducts = stack.ducts;
   std::sort(ducts.begin(), ducts.end(), [](const Duct& a, const Duct& b) { return a.place < b.place; });
   double drawn = 0.0, steel = 0.0; // depth with ducts, depth without ducts, m
@@ -228,10 +228,10 @@ std::vector<Slab> slabs_of(const Stack& stack) {
 }
 
 // Returns the circle, by ternary search for its centre: the largest distance to a corner is a convex function of the centre.
-Round round_about(const std::vector<Slab>& slabs) {
+Round round_about(const std::vector<SectionLayer>& slabs) {
   const auto farthest = [&](double centre) {
     double most = 0.0;
-    for (const Slab& s : slabs)
+    for (const SectionLayer& s : slabs)
       for (const double y : {s.low, s.high}) most = std::max(most, portable::hypot(0.5 * s.width, y - centre));
     return most;
   };
@@ -246,7 +246,7 @@ Round round_about(const std::vector<Slab>& slabs) {
 void Drawing::draw_packets(SheetPanel& panel) const {
   const Stack& stack = geometry_.stack();
   std::vector<double> first(stack.packets.size(), HUGE_VAL), last(stack.packets.size(), -HUGE_VAL);
-  for (const Slab& s : slabs_of(stack)) {
+  for (const SectionLayer& s : slabs_of(stack)) {
     panel.rectangle(-0.5 * s.width, 0.5 * s.width, s.low, s.high, "limb");
     first[s.packet] = std::min(first[s.packet], s.low);
     last[s.packet] = std::max(last[s.packet], s.high);
@@ -266,7 +266,7 @@ void Drawing::draw_packets(SheetPanel& panel) const {
 void Drawing::draw_section() {
   const Stack& stack = geometry_.stack();
   const double depth = depth_of(stack);
-  const std::vector<Slab> slabs = slabs_of(stack);
+  const std::vector<SectionLayer> slabs = slabs_of(stack);
   const Round round = round_about(slabs);
   const double half = 0.5 * round.diameter;
   SheetPanel panel(out_, k_upper_right, "Section of a limb, front face below, mm", {-half, round.centre - half},

@@ -1,4 +1,4 @@
-"""A ladder slides down: a GIF made with matplotlib from the outlines of the bodies. In a notebook run.show() does this without it."""
+"""Makes a GIF of a sliding ladder with matplotlib, from the outlines of the bodies. In a notebook run.show() gives an animated picture."""
 import os
 
 import matplotlib.animation

@@ -1,4 +1,4 @@
-"""Do methods agree within their estimated errors, and what do they cost? One row a method."""
+"""Compares integration methods: do results agree within their error estimates, and what do they cost? One row per method."""
 import os
 import time
 

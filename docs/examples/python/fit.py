@@ -1,4 +1,4 @@
-"""Which friction explains how far a block slid? A study of the kind 'fit', with 95 % intervals."""
+"""Finds the friction that explains a measured slide of a block: a study of the kind 'fit', with 95 % intervals."""
 import os
 
 import matplotlib.pyplot as plt

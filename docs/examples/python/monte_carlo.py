@@ -1,4 +1,4 @@
-"""How likely does a ladder slip if the friction of the floor is hardly known? 400 runs; each that is not certain is counted apart."""
+"""Probability that a ladder slips if the friction of the floor is uncertain: 400 runs. Runs without a reliable result are counted separately."""
 import os
 
 import numpy as np
@@ -6,7 +6,7 @@ import numpy as np
 import steplap
 
 MODELS = os.environ.get("STEPLAP_MODELS", "/usr/share/steplap/models")
-COUNT, CONFIDENCE = 400, 1.96  # quantile of 95 %
+COUNT, CONFIDENCE = 400, 1.96  # number of runs; normal quantile of a 95 % interval
 
 model = steplap.load(f"{MODELS}/machines/ladder.toml", {"simulation.end": 0.5})
 friction = np.random.default_rng(1).normal(0.3, 0.04, COUNT)
@@ -14,7 +14,7 @@ runs = model.samples({"element.foot friction.static_friction": friction}, [("foo
                      estimate="never")
 
 answered = runs["trouble"] == ""
-slid = np.maximum(-runs["foot friction.slide low"], runs["foot friction.slide high"])[answered] > 1e-3  # m
+slid = np.maximum(-runs["foot friction.slide low"], runs["foot friction.slide high"])[answered] > 1e-3  # more than 1 mm
 p = slid.mean()
 half = CONFIDENCE * np.sqrt(p * (1.0 - p) / len(slid))
 print(f"{COUNT - len(slid)} runs without an answer")

@@ -1,4 +1,4 @@
-"""Which damper makes the shock of a stopped mass least? SciPy chooses, steplap runs. The closed form is 0.81 v sqrt(k/m) at 0.265."""
+"""Finds the damping ratio with the least deceleration of a stopped mass, by SciPy. Closed form: 0.81 v sqrt(k/m) at a ratio of 0.265."""
 import numpy as np
 import scipy.optimize
 
@@ -17,7 +17,7 @@ buffer = steplap.build({
 
 
 def shock(ratio):
-    """Largest deceleration over v sqrt(k/m) for a damping ratio."""
+    """Returns the largest deceleration divided by v sqrt(k/m), for a damping ratio."""
     run = buffer.with_values({"element.buffer.damping": 2.0 * ratio * np.sqrt(STIFFNESS * MASS)}).run(estimate="never")
     return -run.extremes("mass.ax")["low"] / (SPEED * OMEGA)
 

@@ -1,4 +1,4 @@
-"""A criterion that no model file has: a lead bears 0.5 m/s2 for at most 20 ms at a time. Without an answer it is open."""
+"""A criterion programmed in Python: the acceleration of a lead may exceed 0.5 m/s2 for at most 20 ms. It is open if it cannot be decided."""
 import os
 
 import numpy as np
@@ -6,11 +6,11 @@ import numpy as np
 import steplap
 
 MODELS = os.environ.get("STEPLAP_MODELS", "/usr/share/steplap/models")
-LIMIT, LONGEST = 0.5, 0.02  # m/s2, s
+LIMIT, LONGEST = 0.5, 0.02  # m/s2; s
 
 
 def longest_beyond(t, values, limit):
-    """Length of the longest interval in which |values| > limit, and how far it is uncertain: a sample at each end, s."""
+    """Returns the length of the longest interval with |values| > limit, and its uncertainty, one sample at each end, s."""
     beyond = np.concatenate([[False], np.abs(values) > limit, [False]])
     begins, ends = np.flatnonzero(~beyond[:-1] & beyond[1:]), np.flatnonzero(beyond[:-1] & ~beyond[1:]) - 1
     lengths = t[ends] - t[begins]

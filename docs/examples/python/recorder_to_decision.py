@@ -1,4 +1,4 @@
-"""From the file of a shock recorder to a decision. The record is made here: two shocks along x, 1 g of gravity along z."""
+"""Makes a decision from the file of a shock recorder. The record is synthetic: two shocks along x, gravity of 1 g along z."""
 import os
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""How much clamping pressure do the joints of a transformer need? A sweep, with the error of each number."""
+"""Clamping pressure required by the joints of a transformer: a sweep, with the error of each number."""
 import os
 
 import matplotlib.pyplot as plt

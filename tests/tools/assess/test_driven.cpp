@@ -66,7 +66,7 @@ TEST_CASE("the poses of an event are those at its worst instant, when the limite
   for (std::size_t i = 0; i < pulse.x.size(); ++i) pulse.x[i] = a0 * std::cos(std::numbers::pi * static_cast<double>(i) / 100.0);
   const std::string limit = "[[acceptance]]\nname = \"speed\"\nchannel = \"bar.vx\"\nwithin = 1.0\n";
   const DrivenModel model = driven(bar_text(1.5, "held") + limit);
-  const Passage passage = Traveller(model).pass(pulse, Estimating::never);
+  const Passage passage = VoyageModel(model).pass(pulse, Estimating::never);
   REQUIRE(passage.is_made);
   REQUIRE(passage.worst_instant.has_value());
   CHECK(*passage.worst_instant == doctest::Approx(0.5 * duration).epsilon(1e-3)); // the cosine is drawn by 100 chords
@@ -146,7 +146,7 @@ double least_margin(const DrivenModel& model, const std::vector<double>& along, 
   history.step = 1e-3;
   history.x = along, history.y.assign(along.size(), 0.0);
   history.across = across;
-  const Passage passage = Traveller(model).pass(history, Estimating::never);
+  const Passage passage = VoyageModel(model).pass(history, Estimating::never);
   REQUIRE_MESSAGE(passage.is_made, passage.reason);
   double least = 1e300;
   for (const JointPassage& joint : passage.joints) least = std::min(least, joint.margin);
@@ -183,7 +183,7 @@ TEST_CASE("the record's third axis presses the sheets of a core as a signal of t
   };
   std::vector<DriveHistory> halves{part(0, 50), part(50, along.size())};
   halves[0].goes_on = true;
-  CHECK(Traveller(recorded).pass(halves[0], Estimating::never).is_made);
+  CHECK(VoyageModel(recorded).pass(halves[0], Estimating::never).is_made);
   const VoyageOutcome halved = VoyageRunner(recorded, halves, {}).run({});
   CHECK(halved.summary.unknown == "");
   CHECK(halved.summary.least_margin == doctest::Approx(with_record).epsilon(0.02)); // one sample of 1 ms later

@@ -113,7 +113,7 @@ struct Bench {
     REQUIRE(find_events(options.reading, all, 1e9, events));
     REQUIRE(events.events.size() == 1);
     const DrivenModel driven = read_driven_model(model);
-    Traveller traveller(driven);
+    VoyageModel traveller(driven);
     const Passage passage =
         traveller.pass(drive_history(events, events.events.front(), driven.recorder, driven.marker_angle), Estimating::never);
     for (const LimitPassage& limit : passage.clearances)

@@ -15,7 +15,7 @@ const std::string k_asked = "[[acceptance]]\nname = \"slide\"\nchannel = \"floor
 
 // |floor.slide| at its largest after each of the events, one after the other.
 std::vector<double> slides(const DrivenModel& model, const std::vector<double>& peaks) {
-  Traveller traveller(model);
+  VoyageModel traveller(model);
   std::vector<double> found;
   for (const double peak : peaks) {
     const Passage passage = traveller.pass(triangles({peak}, 0.1, 0.4), Estimating::never);
@@ -66,7 +66,7 @@ TEST_CASE("the voyage by one system, as samples take it, is the voyage event by 
     const VoyageOutcome outcome = runner.run({});
     CHECK(outcome.summary.unknown == "");
     CHECK(outcome.events_made == 2);
-    Traveller traveller(model);
+    VoyageModel traveller(model);
     Verdict worst = Verdict::hold;
     for (const DriveHistory& history : histories)
       for (const LimitPassage& limit : traveller.pass(history, Estimating::never).clearances) worst = std::max(worst, limit.outcome);

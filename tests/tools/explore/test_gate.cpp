@@ -13,13 +13,13 @@ constexpr unsigned short k_port = 4242;
 const std::string k_token = "0123456789abcdef0123456789abcdef";
 
 RequestHead good(const std::string& method) {
-  RequestHead knock{method,
-                    "/" + k_token + "/run",
-                    "127.0.0.1:4242",
-                    method == "POST" ? "http://127.0.0.1:4242" : "",
-                    "",
-                    method == "POST" ? "application/json" : ""};
-  return knock;
+  RequestHead head{method,
+                   "/" + k_token + "/run",
+                   "127.0.0.1:4242",
+                   method == "POST" ? "http://127.0.0.1:4242" : "",
+                   "",
+                   method == "POST" ? "application/json" : ""};
+  return head;
 }
 
 } // namespace
@@ -38,35 +38,35 @@ TEST_CASE("one thing that is wrong is enough to be refused") {
   for (const char* method : {"GET", "POST"}) {
     for (const char* target : {"", "/", "/0123456789abcdef0123456789abcdee/run", "/0123456789abcdef0123456789abcdef", "/0123456789abcdef/",
                                "0123456789abcdef0123456789abcdef/"}) {
-      RequestHead knock = good(method);
-      knock.target = target;
-      CHECK_MESSAGE(gate.refusal(knock) != "", target);
+      RequestHead head = good(method);
+      head.target = target;
+      CHECK_MESSAGE(gate.refusal(head) != "", target);
     }
     for (const char* host :
          {"", "127.0.0.1", "127.0.0.1:4243", "localhost:4242", "evil.example:4242", "127.0.0.1:4242.evil.example", "[::1]:4242"}) {
-      RequestHead knock = good(method);
-      knock.host = host;
-      CHECK_MESSAGE(gate.refusal(knock) != "", host);
+      RequestHead head = good(method);
+      head.host = host;
+      CHECK_MESSAGE(gate.refusal(head) != "", host);
     }
     for (const char* origin :
          {"null", "http://evil.example", "https://127.0.0.1:4242", "http://127.0.0.1", "http://localhost:4242", "http://127.0.0.1:4242/"}) {
-      RequestHead knock = good(method);
-      knock.origin = origin;
-      CHECK_MESSAGE(gate.refusal(knock) != "", origin);
+      RequestHead head = good(method);
+      head.origin = origin;
+      CHECK_MESSAGE(gate.refusal(head) != "", origin);
     }
     for (const char* site : {"cross-site", "same-site", "anything"}) {
-      RequestHead knock = good(method);
-      knock.fetch_site = site;
-      CHECK_MESSAGE(gate.refusal(knock) != "", site);
+      RequestHead head = good(method);
+      head.fetch_site = site;
+      CHECK_MESSAGE(gate.refusal(head) != "", site);
     }
     RequestHead twice = good(method);
     twice.host_headers = 2;
     CHECK(gate.refusal(twice) != "");
   }
   for (const char* method : {"HEAD", "PUT", "OPTIONS", "get", ""}) {
-    RequestHead knock = good("GET");
-    knock.method = method;
-    CHECK_MESSAGE(gate.refusal(knock) != "", method);
+    RequestHead head = good("GET");
+    head.method = method;
+    CHECK_MESSAGE(gate.refusal(head) != "", method);
   }
   RequestHead nameless = good("POST");
   nameless.origin = "";
@@ -89,9 +89,9 @@ TEST_CASE("the first address serves once, from nowhere else") {
   CHECK(gate.refusal(first) == "");
   RequestHead near = first;
   near.target.back() = near.target.back() == '0' ? '1' : '0';
-  CHECK_FALSE(gate.takes_first(near));
-  CHECK(gate.takes_first(first));
-  CHECK_FALSE(gate.takes_first(first));
+  CHECK_FALSE(gate.is_first_use(near));
+  CHECK(gate.is_first_use(first));
+  CHECK_FALSE(gate.is_first_use(first));
 }
 
 TEST_CASE("tokens are long and new each time") {

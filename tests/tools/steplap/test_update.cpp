@@ -47,7 +47,7 @@ TEST_CASE("renamed keys get their present names where they stand, also behind le
   renamed(9, 1); // beyond the end
   model.renamed_keys.push_back({{"base.toml", 1, 1}, "rate", "stiffness", "strut"});
   CHECK(updated(text, "m.toml", model).text == update.text);
-  CHECK(updated(text, "m.toml", model).left_keys == 3);
+  CHECK(updated(text, "m.toml", model).missing_keys == 3);
 }
 
 TEST_CASE("check --update rewrites a file once and keeps its model") {

@@ -11,9 +11,9 @@
 
 namespace steplap::peers {
 
-enum class AndrewsVariant { test_set, a03 }; // Θ = 0 at the start; β = −0.0620 at the start
+enum class AndrewsVariant { test_set, a03 }; // start with Θ = 0; start with β = −0.0620
 
-using AndrewsAngles = std::array<double, 7>; // β, Θ, γ, Φ, δ, Ω, ε as in the literature
+using AndrewsAngles = std::array<double, 7>; // β, Θ, γ, Φ, δ, Ω, ε, named as in the literature
 
 struct AndrewsResult {
   AndrewsAngles angles{};
@@ -23,20 +23,21 @@ struct AndrewsResult {
 
 inline constexpr double k_andrews_end[2] = {0.03, 0.05};
 
-// Exactly assembled solution at the end of each variant (30-digit integration).
+// Final angles of each variant for an exactly assembled start, from an integration with 30 digits.
 inline constexpr AndrewsAngles k_andrews_exact[2] = {
     {15.8107711951537, -15.7563710584118, 0.0408222401196458, -0.534730116342080, 0.524409965879954, 0.534730116342080, 1.04808074104194},
     {33.8153407213602, -33.5711553782194, 0.115158527591552, -0.404764941308129, 0.526051256322152, 0.404764941308129, 1.05727175590757}};
 
-[[nodiscard]] double andrews_start(AndrewsVariant variant); // β
+[[nodiscard]] double andrews_start(AndrewsVariant variant); // initial value of β, rad
 [[nodiscard]] AndrewsAngles assemble_andrews(double beta);
 
-// β̈ of the crank, all else eliminated: y = (β, β̇).
+// Computes (β̇, β̈) from y = (β, β̇), with all other coordinates eliminated.
 void andrews_reduced_rates(const double* y, double* dydt);
 
-// y = (seven absolute angles, their rates); one dense KKT solve. lambda may be null.
+// Computes the derivative of y = (seven absolute angles, their rates) by one dense KKT solution. Writes the multipliers to `lambda` unless
+// it is null.
 void andrews_kkt_rates(const double* y, double* dydt, double* lambda);
-// Residual of M a + Gᵀλ − f and G a − γ for given accelerations: 7 + 6 values.
+// Writes the residuals of M a + Gᵀλ − f (7 numbers) and G a − γ (6 numbers) for given accelerations.
 void andrews_kkt_residual(const double* y, const double* a, const double* lambda, double* residual);
 
 [[nodiscard]] AndrewsResult run_andrews_dop853(AndrewsVariant variant, double tolerance);

@@ -15,12 +15,12 @@ using Vector2 = Eigen::Vector2d;
 using Vector7 = Eigen::Matrix<double, 7, 1>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-// A body is pinned to the point p of its parent (or of the ground).
+// A body that is pinned to its parent, or to the ground, at the parent's point `pin`.
 struct Body {
   double mass, inertia;
-  Vector2 centre; // in its own frame, origin at the pin
-  int parent;     // −1: ground
-  Vector2 pin;    // in the parent's frame
+  Vector2 centre; // centre of gravity in the body's frame, whose origin is the pin
+  int parent;     // index of the parent; −1: ground
+  Vector2 pin;    // position of the pin in the parent's frame
   Vector2 e;      // position of E in the body's frame (unused for the crank)
 };
 
@@ -33,7 +33,7 @@ const std::array<Body, 7> k_bodies = {{
     {0.00706, 5.667e-7, {0.00579, 0.0}, 6, {0.0, -0.04}, {0.02, 0.0}},
     {0.05498, 1.912e-5, {-0.00449, -0.01228}, -1, {-0.06934, -0.00227}, {0.0, 0.0}},
 }};
-constexpr int k_chain_ends[3] = {1, 3, 5}; // bodies whose point E coincides with that of K3
+constexpr int k_chain_ends[3] = {1, 3, 5}; // bodies that share point E with K3
 constexpr int k_triangle = 2;
 constexpr double k_torque = 0.033, k_stiffness = 4530.0, k_free_length = 0.07785;
 
@@ -93,7 +93,7 @@ Equations equations(const double* y) {
 
 } // namespace
 
-// M is two by two for each body with its parent, one by one for the triangle.
+// Solves the KKT system. M has a 2 × 2 block for each body with its parent, and a 1 × 1 block for the triangle.
 void andrews_kkt_rates(const double* y, double* dydt, double* lambda) {
   const Equations eq = equations(y);
   Vector7 free;                        // M⁻¹ f

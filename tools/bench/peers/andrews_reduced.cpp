@@ -1,6 +1,5 @@
-// Andrews' mechanism reduced to the crank angle β: three circle intersections give
-// the pose, two derivatives with respect to β carried along give the effective
-// inertia m(β) and its slope: m β̈ = Q(β) − ½ m' β̇².
+// Andrews' mechanism reduced to the crank angle β. The pose follows from three circle intersections. Their first and second derivatives
+// with respect to β give the effective inertia m(β) and its slope: m β̈ = Q(β) − ½ m' β̇².
 
 #include "andrews.h"
 #include "dop853_run.h"
@@ -11,7 +10,7 @@
 namespace steplap::peers {
 namespace {
 
-// A function of β: value, first and second derivative.
+// A function of β with its value and first two derivatives.
 struct Jet {
   double v, d, dd;
 };
@@ -40,7 +39,7 @@ inline Point operator*(double s, const Point& a) { return {s * a.x, s * a.y}; }
 inline Point perp(const Point& a) { return {-1.0 * a.y, a.x}; }
 inline Point fixed(double x, double y) { return {{x, 0, 0}, {y, 0, 0}}; }
 
-// The point at distances r from p and s from q, on the given side of p → q.
+// Returns the point at distance r from p and s from q, on the given side of the line from p to q.
 inline Point intersect(const Point& p, double r, const Point& q, double s, double side) {
   const Point along = q - p;
   const Jet square = along.x * along.x + along.y * along.y;
@@ -84,7 +83,7 @@ inline Pose pose_of(double beta) {
   p.g = intersect(a, 0.04, p.e, 0.02, 1.0);
   p.h = intersect(a, 0.04, p.e, 0.02, -1.0);
   p.axis2 = (1.0 / 0.028) * (p.f - p.e);
-  p.axis3 = (1.0 / 0.035) * perp(p.e - b); // E lies on the negative y axis of K3
+  p.axis3 = (1.0 / 0.035) * perp(p.e - b); // E is on the negative y axis of K3
   p.axis4 = (1.0 / 0.02) * perp(p.e - p.g);
   p.axis5 = (1.0 / 0.04) * (p.g - a);
   p.axis6 = (1.0 / 0.02) * (p.e - p.h);
@@ -139,7 +138,7 @@ AndrewsAngles assemble_andrews(double beta) {
 
 double andrews_start(AndrewsVariant variant) {
   if (variant == AndrewsVariant::a03) return -0.0620;
-  // Θ = 0: E = −3 F, and E lies on the circle of radius 0.035 about B.
+  // For Θ = 0, E = −3 F, and E is on the circle of radius 0.035 m about B.
   const double r = 0.028 - k_crank_arm;
   const double square = k_bx * k_bx + k_by * k_by;
   const double cosine = (r * r + square - 0.035 * 0.035) / (2.0 * r * std::sqrt(square));

@@ -1,4 +1,4 @@
-// Andrews' mechanism under SUNDIALS: both forms with ARKODE, the KKT form with IDA.
+// Integrates Andrews' mechanism with SUNDIALS: both forms with ARKODE, the KKT form also with IDA.
 
 #include "andrews.h"
 #include "arkode_runner.h"
@@ -22,7 +22,7 @@ int kkt(double, N_Vector y, N_Vector dydt, void*) {
   return 0;
 }
 
-// Absolute angles of the bodies at the start; see andrews.h for the order.
+// Returns the initial absolute angles of the bodies, in the order of andrews.h, and their rates.
 std::array<double, 14> start_state(AndrewsVariant variant) {
   const AndrewsAngles q = assemble_andrews(andrews_start(variant));
   return {q[0], q[0] + q[1], q[2], q[3] + q[4], q[4], q[5] + q[6], q[6]};
@@ -84,7 +84,7 @@ AndrewsResult run_andrews_kkt_ida(AndrewsVariant variant, double tolerance) {
   SUNLinearSolver solver = SUNLinSol_Dense(yv.get(), matrix, sundials.context);
   require(IDASetLinearSolver(memory, solver, matrix), "IDASetLinearSolver");
   require(IDASetId(memory, id.get()), "IDASetId");
-  // Multipliers follow from the state: they need no error control of their own.
+  // Excludes the multipliers from the error control, because they follow from the state.
   require(IDASetSuppressAlg(memory, SUNTRUE), "IDASetSuppressAlg");
   require(IDASetMaxNumSteps(memory, 10000000), "IDASetMaxNumSteps");
   const double end = k_andrews_end[static_cast<int>(variant)];
@@ -93,7 +93,7 @@ AndrewsResult run_andrews_kkt_ida(AndrewsVariant variant, double tolerance) {
   AndrewsResult result;
   const int flag = IDASolve(memory, end, &t, yv.get(), rv.get(), IDA_NORMAL);
   result.angles = relative_angles(y.data());
-  if (flag < 0) result.angles.fill(1e300); // did not reach the end: the error is meaningless
+  if (flag < 0) result.angles.fill(1e300); // the end was not reached
   require(IDAGetNumSteps(memory, &result.steps), "IDAGetNumSteps");
   result.evaluations = counter.evaluations;
   SUNLinSolFree(solver);

@@ -13,26 +13,26 @@ struct ArkodeProblem {
   int size = 0;
   ARKRhsFn rates = nullptr;
   void* data = nullptr;
-  int switches = 0; // number of root functions; an event is a change to a negative value
+  int switches = 0; // number of event functions; an event is a change to a negative value
   ARKRootFn roots = nullptr;
-  double longest_step = 0.0; // 0: no bound
+  double longest_step = 0.0; // longest step, s; 0: unlimited
 };
 
 class ArkodeRunner {
 public:
-  // y belongs to the caller and always contains the state at time().
+  // `y` belongs to the caller and always contains the state at time().
   ArkodeRunner(const ArkodeProblem& problem, double* y, double tolerance);
   ~ArkodeRunner();
   ArkodeRunner(const ArkodeRunner&) = delete;
   ArkodeRunner& operator=(const ArkodeRunner&) = delete;
 
-  // Advances to the time, or to the first root before it. Returns the index of the root function; −1 if there was no root.
+  // Integrates to the time `until`, or to the first event before. Returns the index of the event function; −1 if there was none.
   int advance(double until);
-  // Must be called after a change of y or of the modes. 0: start with the last step size.
+  // Must be called after y or the modes were changed. `first_step` 0: starts with the last step size.
   void restart(double first_step = 0.0);
   // Returns the interpolated state at a time within the last step.
   void interpolate(double t, double* y);
-  // As advance, but returns after every step, for sampling (−1: no root).
+  // As advance(), but returns after every step, so that the caller can sample it.
   int step(double until);
 
   [[nodiscard]] double time() const { return t_; }

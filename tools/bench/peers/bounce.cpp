@@ -1,6 +1,5 @@
-// B5: a mass of 1 kg dropped from 1 m onto a unilateral spring and damper without
-// adhesion, ARKODE with its root finding. Modes: flight, contact (force positive),
-// held (below the surface with the force held at zero).
+// B5: a mass of 1 kg dropped from 1 m onto a unilateral spring and damper without adhesion, integrated by ARKODE with its root finding.
+// Modes: flight, contact (positive force), held (below the surface, with zero force).
 
 #include "arkode_runner.h"
 #include "mechanisms.h"
@@ -12,7 +11,7 @@ namespace {
 
 constexpr double k_gravity = 9.81, k_stiffness = 1e5, k_damping = 20.0;
 constexpr double k_end = 10.0;
-constexpr double k_contact_step = 1e-3; // first step after landing; contact lasts 10 ms
+constexpr double k_contact_step = 1e-3; // first step after landing, s; contact lasts 10 ms
 
 enum class Mode { flight, contact, held };
 

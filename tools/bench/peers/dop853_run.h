@@ -1,7 +1,6 @@
 #pragma once
 
-// Own DOP853 from 0 to an end time without events: one absolute and relative
-// tolerance, PI control. For the smooth scenes.
+// Integrates a smooth system from 0 to an end time with DOP853: one absolute and relative tolerance, PI step control, no events.
 
 #include "dop853_step.h"
 
@@ -33,7 +32,7 @@ SmoothCounts run_dop853(F rates, std::array<double, N>& y, double end, double fi
     std::array<double, N> weight;
     for (std::size_t i = 0; i < N; ++i) weight[i] = 1.0 / (tolerance * (1.0 + std::max(std::abs(y[i]), std::abs(step.y1[i]))));
     const double error = std::max(step.error(h, weight), 1e-30);
-    if (!(error <= 1.0)) { // also a trial that left the domain
+    if (!(error <= 1.0)) { // also true if a trial has left the domain
       h *= std::isfinite(error) ? std::max(0.2, 0.9 * std::pow(error, -0.125)) : 0.2;
       continue;
     }

@@ -18,13 +18,13 @@ template <int N> class Dop853Step {
 public:
   using Vector = std::array<double, N>;
 
-  // k[0] must hold f(t, y). Afterwards y1 holds the new state, not yet f(t + h, y1).
+  // Computes the new state y1. Precondition: k[0] contains f(t, y). f(t + h, y1) is not computed.
   template <class F> void advance(F& f, double t, const Vector& y, double h) {
     stages(f, t, y, h, std::make_integer_sequence<int, dop853::k_stages - 1>{});
     combine<12>(y, h, y1);
   }
 
-  // Scaled error of the step; weight holds 1 / tolerance per component.
+  // Returns the scaled error of the step. `weight` contains 1/tolerance per component.
   [[nodiscard]] double error(double h, const Vector& weight) const {
     double sum5 = 0.0;
     double sum3 = 0.0;
@@ -38,7 +38,7 @@ public:
     return scale > 0.0 ? std::abs(h) * sum5 / std::sqrt(scale * N) : 0.0;
   }
 
-  // k[12] must hold f(t + h, y1). Three further evaluations.
+  // Prepares the dense output with three further evaluations. Precondition: k[12] contains f(t + h, y1).
   template <class F> void prepare_dense(F& f, double t, const Vector& y, double h) {
     Vector stage;
     combine<13>(y, h, stage);

@@ -1,11 +1,10 @@
-// B2, the N-four-bar of IFToMM A02, hand-written twice.
+// B2, the N-four-bar of IFToMM A02, hand-written in two forms.
 //
 // On the parallelogram branch it has one coordinate, θ from the vertical:
 //   θ'' = g ((N+1)/2 + N) / ((N+1)/3 + N) sin θ.
-// The general form has the N + 1 angles α of the rods and N angles β of the bars,
-// two closures a window, and passes through flat positions where they lose rank:
-// fixed-step RK4 with a dense Schur complement and projection onto position and
-// velocity constraints after each step.
+// The general form has the N + 1 angles α of the rods, the N angles β of the bars, and two closure conditions per window. It passes through
+// flat positions, where the closures lose rank. It is integrated by RK4 with fixed steps, a dense Schur complement, and projection onto
+// position and velocity constraints after each step.
 
 #include "dop853_run.h"
 #include "mechanisms.h"
@@ -30,7 +29,7 @@ double pull_of(int windows) {
 
 double error_of(const FourBarExact& exact, double x, double y) { return std::max(std::abs(x - exact.x), std::abs(y - exact.y)); }
 
-// State: α0 … αN, β1 … βN, then their rates. Rods and bars: 1 m, 1 kg, uniform.
+// General form with the state α0 … αN, β1 … βN and their rates. Rods and bars are uniform, 1 m and 1 kg.
 class FourBarChain {
 public:
   explicit FourBarChain(int windows)
@@ -40,7 +39,7 @@ public:
   [[nodiscard]] Eigen::VectorXd start() const {
     Eigen::VectorXd y = Eigen::VectorXd::Zero(2 * count_);
     y.head(n_ + 1).setConstant(0.5 * std::numbers::pi);
-    y.segment(count_, n_ + 1).setConstant(-1.0); // B0 moves at +1 m/s
+    y.segment(count_, n_ + 1).setConstant(-1.0); // point B0 moves at +1 m/s
     return y;
   }
 
@@ -53,7 +52,7 @@ public:
     dydt.tail(count_) = free_ - reached_ * lambda;
   }
 
-  // Least-motion return to the constraints, positions then velocities.
+  // Projects positions, then velocities, onto the constraints with the smallest change.
   void project(Eigen::VectorXd& y) {
     assemble(y);
     Eigen::VectorXd open(2 * n_);
@@ -101,7 +100,7 @@ private:
     schur_.compute(g_ * reached_);
   }
 
-  // M: each bar is coupled with the rod that carries it, the last rod stands alone.
+  // Solves M x = right. In M each bar is coupled with the rod that carries it; the last rod is uncoupled.
   void solve_mass(const Eigen::VectorXd& right, Eigen::VectorXd& x) const {
     for (int j = 0; j < n_; ++j) {
       const int bar = n_ + 1 + j;
@@ -116,7 +115,7 @@ private:
   Eigen::VectorXd mass_, coupling_;
   Eigen::MatrixXd g_, reached_;
   Eigen::VectorXd gamma_, force_, free_;
-  Eigen::LDLT<Eigen::MatrixXd> schur_; // pivoted: near the flat positions rank is lost
+  Eigen::LDLT<Eigen::MatrixXd> schur_; // pivoted, because rank is lost near the flat positions
 };
 
 } // namespace

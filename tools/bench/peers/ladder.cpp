@@ -28,14 +28,14 @@ void print_table(const std::vector<Rung>& rungs) {
 }
 
 double cpu_ms_at(const std::vector<Rung>& rungs, const std::string& problem, const std::string& program, double error) {
-  std::vector<std::pair<double, double>> front; // error, time
+  std::vector<std::pair<double, double>> front; // Pareto-optimal pairs of error and time
   for (const Rung& r : rungs)
     if (r.problem == problem && r.program == program && std::isfinite(r.error)) front.emplace_back(std::max(r.error, 1e-16), r.cpu_ms);
   std::sort(front.begin(), front.end());
   double best = -1.0;
   for (const auto& [e, ms] : front)
     if (e <= error && (best < 0.0 || ms < best)) best = ms;
-  // Between neighbours on either side of the error.
+  // Interpolates between the neighbouring points on both sides of the error.
   for (std::size_t i = 0; i + 1 < front.size(); ++i) {
     const auto& low = front[i];
     const auto& high = front[i + 1];

@@ -1,6 +1,6 @@
 #pragma once
 
-// Output of every peer: one row per setting.
+// Results of all compared programs: one row per setting.
 
 #include <cstdio>
 #include <string>
@@ -11,15 +11,15 @@ namespace steplap::peers {
 struct Rung {
   std::string problem;
   std::string program;
-  std::string setting; // a tolerance or a step size
+  std::string setting; // tolerance or step size
   double error = 0.0;
-  double cpu_ms = 0.0; // integration alone, least of several runs
+  double cpu_ms = 0.0; // CPU time of the integration alone, ms; minimum of several runs
   long steps = 0;
   long evaluations = 0;
   long events = 0;
 };
 
-// CPU seconds of this thread.
+// Returns the CPU time of this thread, s.
 [[nodiscard]] double cpu_seconds();
 
 // Returns the smallest CPU time, ms, of repeated runs; short runs are repeated more often.
@@ -41,11 +41,11 @@ void write_csv(std::FILE* file, const std::vector<Rung>& rungs);
 
 void print_table(const std::vector<Rung>& rungs);
 
-// Returns the CPU time for a given error, by linear interpolation between logarithms along the Pareto set; negative if no setting reaches
-// it.
+// Returns the CPU time for a given error, ms, interpolated in the logarithms along the Pareto-optimal settings; negative if no setting
+// reaches the error.
 [[nodiscard]] double cpu_ms_at(const std::vector<Rung>& rungs, const std::string& problem, const std::string& program, double error);
 
-// One line per problem and program: CPU time at errors 1e-3, 1e-6, 1e-9.
+// Prints one line per problem and program: CPU time at errors of 1e-3, 1e-6 and 1e-9.
 void print_summary(const std::vector<Rung>& rungs);
 
 } // namespace steplap::peers

@@ -1,10 +1,9 @@
-// peer_mechanisms: B1 … B5 in programs hand-written for one scene each, and
-// B1 … B3 in Simbody, over a ladder of tolerances.
+// Program peer_mechanisms: runs B1 … B5 in hand-written programs, and B1 … B3 in Simbody, over a sequence of tolerances.
 //
 // Usage: peer_mechanisms [--csv FILE] [--only PROBLEM] [--slow]
-// --slow adds the runs of many seconds (N-four-bar with N = 40 beyond the first rungs).
-// Error: worst angle (B1) or coordinate (B2 … B4) at the end against the exact
-// solution; B5: worst height over 10 ms samples against its own tightest run.
+// --slow adds runs of many seconds (N-four-bar with N = 40 at tight settings).
+// Error: largest error of an angle (B1) or coordinate (B2 … B4) at the end, relative to the exact solution; for B5 the largest error of the
+// height over 10 ms samples, relative to the program's own run with the tightest tolerance.
 
 #include "andrews.h"
 #include "ladder.h"
@@ -115,7 +114,7 @@ Rung measure(const ProgramRuns& entry, double setting) {
   MechanismResult result = entry.run(setting);
   if (result.cpu_ms == 0.0) {
     result.cpu_ms = least_ms([&] { (void)entry.run(setting); }, 0.1);
-  } else { // the program times its own integration
+  } else { // the program measures the time of its integration itself
     for (double spent = result.cpu_ms; spent < 100.0; spent += 10.0) result.cpu_ms = std::min(result.cpu_ms, entry.run(setting).cpu_ms);
   }
   return {entry.problem, entry.program, text, result.error, result.cpu_ms, result.steps, result.evaluations, result.events};

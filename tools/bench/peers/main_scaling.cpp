@@ -1,4 +1,4 @@
-// Measures the cost of a step per body in programs other than steplap, from 10 bodies up.
+// Measures the cost of a step per body in other programs than steplap, for 10 bodies and more.
 //
 //   peer_scaling [largest number of bodies, default 10000]
 #include "scaling.h"
@@ -14,7 +14,8 @@ using namespace steplap::peers;
 
 namespace {
 
-// Programs with methods of different order must agree on the position of the last body, up to h⁴ and rounding over about 1000 steps.
+// Largest permitted difference between programs in the position of the last body, m. Their methods differ by terms of order h⁴ and rounding
+// over about 1000 steps.
 constexpr double k_agreement = 1e-6;
 
 struct Table {

@@ -1,10 +1,8 @@
-// peer_transformer: the hand-written transformer under three integrators, both
-// conditions, over a ladder of tolerances.
+// Program peer_transformer: runs the hand-written transformer with three integrators and both conditions over a sequence of tolerances.
 //
 // Usage: peer_transformer [--csv FILE] [--reference DIRECTORY] [--events TOLERANCE]
-// DIRECTORY holds no_interference.csv and interference.csv. Error: the worse of θ1
-// and the bottom arresting force over the 1 kHz samples, each scaled by its range,
-// the worse of both conditions; times are of both conditions together.
+// DIRECTORY contains no_interference.csv and interference.csv. The error is the larger one of θ1 and of the bottom arresting force over 1
+// kHz samples, relative to their ranges, and the larger one of both conditions. Times are sums over both conditions.
 
 #include "ladder.h"
 #include "transformer_programs.h"
@@ -67,7 +65,7 @@ double error_of(const History& run, const History& reference) {
   return std::max(scaled_error(run, reference, &Outputs::theta1), scaled_error(run, reference, &Outputs::bottom_arrest));
 }
 
-// Returns the two compared columns by name; empty if the file does not exist.
+// Reads the two compared columns of a reference file. Returns nothing if the file does not exist.
 History read_reference(const std::string& path) {
   History rows;
   std::ifstream file(path);
@@ -84,7 +82,7 @@ History read_reference(const std::string& path) {
     }
     rows.push_back(row);
   }
-  if (!rows.empty()) rows.erase(rows.begin()); // the header
+  if (!rows.empty()) rows.erase(rows.begin()); // removes the header
   return rows;
 }
 

@@ -1,5 +1,5 @@
-// B3, the simple pendulum of IFToMM A01 in its angle: θ'' = −(g/l) sin θ, θ from
-// the downward vertical, released at rest from the horizontal.
+// B3, the simple pendulum of IFToMM A01, released at rest from the horizontal: θ'' = −(g/l) sin θ, with θ measured from the downward
+// vertical.
 
 #include "dop853_run.h"
 #include "mechanisms.h"

@@ -10,20 +10,20 @@
 
 namespace steplap::peers {
 
-constexpr double k_scaling_step = 1e-4; // s
+constexpr double k_scaling_step = 1e-4; // step, s
 constexpr double k_gravity = 9.81;
 constexpr double k_rod_inertia = 0.083;
 constexpr double k_grid_stiffness = 1e4, k_grid_damping = 1.0;
 
 struct ScalingResult {
-  double step_us = 0.0;     // CPU time of a step per body
-  double evaluations = 0.0; // per step
-  double probe = 0.0;       // y of the last body at the end, to compare programs
+  double step_us = 0.0;     // CPU time of a step per body, µs
+  double evaluations = 0.0; // number of evaluations per step
+  double probe = 0.0;       // final y coordinate of the last body, m, for comparison of programs
 };
 
 [[nodiscard]] inline int steps_for(int bodies) { return bodies > 6000 ? 3 : 20000 / bodies; }
 
-// Returns the smallest time of three batches of steps_for(bodies) steps each, as bench_scaling does.
+// Returns the CPU time per step and body, µs: the smallest of three batches of steps_for(bodies) steps each.
 template <class Advance> [[nodiscard]] double least_step_us(int bodies, Advance advance) {
   const int steps = steps_for(bodies);
   double least = 1e300;
@@ -36,7 +36,7 @@ template <class Advance> [[nodiscard]] double least_step_us(int bodies, Advance 
   return 1e6 * least / steps / bodies;
 }
 
-// Hand-written scene: rates for y = positions, then velocities.
+// Interface of a hand-written scene, whose state y contains positions, then velocities.
 class ByHand {
 public:
   virtual ~ByHand() = default;
@@ -45,7 +45,7 @@ public:
   [[nodiscard]] virtual double probe(const double* y) const = 0;
 };
 
-// Absolute coordinates; pin forces from a block-tridiagonal system.
+// Chain in absolute coordinates. Pin forces are the solution of a block-tridiagonal system.
 class ChainByHand : public ByHand {
 public:
   explicit ChainByHand(int rods);
@@ -62,7 +62,7 @@ private:
   std::vector<Block> inverse_;
 };
 
-// Point masses with coordinates x and y only.
+// Grid of point masses with coordinates x and y.
 class GridByHand : public ByHand {
 public:
   explicit GridByHand(int side) : side_(side) {}
@@ -76,7 +76,7 @@ private:
 };
 
 [[nodiscard]] ScalingResult run_rk4(ByHand& scene, int bodies);
-[[nodiscard]] ScalingResult run_arkode(ByHand& scene, int bodies); // Dormand-Prince, fixed step
+[[nodiscard]] ScalingResult run_arkode(ByHand& scene, int bodies); // Dormand-Prince with fixed step
 [[nodiscard]] ScalingResult run_chain_simbody(int rods);
 [[nodiscard]] ScalingResult run_grid_simbody(int side);
 

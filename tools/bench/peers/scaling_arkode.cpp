@@ -1,4 +1,4 @@
-// The hand-written scenes under ARKODE: Dormand-Prince 5(4) at a fixed step.
+// Integrates the hand-written scenes with ARKODE: Dormand-Prince 5(4) with fixed step.
 #include "scaling.h"
 #include "sundials_handles.h"
 

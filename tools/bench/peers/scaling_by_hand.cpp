@@ -19,8 +19,8 @@ std::vector<double> ChainByHand::start() const {
   return y;
 }
 
-// Joint condition: the left end of each rod coincides with the right end of the previous one:
-//   D_i λ_i + U_{i−1} λ_{i−1} + U_i λ_{i+1} = −(ω_i² r_i + ω_{i−1}² r_{i−1}), the first with the weight as well,
+// Rates of the state. The multipliers λ_i follow from the condition that the left end of rod i coincides with the right end of rod i − 1:
+//   D_i λ_i + U_{i−1} λ_{i−1} + U_i λ_{i+1} = −(ω_i² r_i + ω_{i−1}² r_{i−1}), with the weight in the first equation,
 //   U_i = n_i n_iᵀ/J − 1/m, D_i = (1/m + n_i n_iᵀ/J) + the same of the rod before, n = ẑ × r.
 void ChainByHand::rates(const double* y, double* dy) {
   const auto n = static_cast<std::size_t>(n_);
@@ -30,7 +30,7 @@ void ChainByHand::rates(const double* y, double* dy) {
     rx_[i] = 0.5 * std::cos(y[3 * i + 2]);
     ry_[i] = 0.5 * std::sin(y[3 * i + 2]);
   }
-  // Forward elimination; p holds the right-hand sides.
+  // Eliminates forward; p contains the right-hand sides.
   for (std::size_t i = 0; i < n; ++i) {
     double w = v[3 * i + 2] * v[3 * i + 2];
     double bx = -w * rx_[i], by = -w * ry_[i];
@@ -88,7 +88,7 @@ std::vector<double> GridByHand::start() const {
   return y;
 }
 
-// A spring-damper of free length 1 m from b to a; b < 0: from the ground above a.
+// Adds the force of a spring-damper of free length 1 m from mass b to mass a. b < 0: from the ground above a.
 void GridByHand::pull(const double* y, double* dy, int a, int b) const {
   const int n = 2 * side_ * side_;
   const double* v = y + n;

@@ -1,5 +1,5 @@
-// The scenes of scaling.h in Simbody: a tree of pins (its recursive equations of order n) and free planar bodies on springs, with its
-// Runge-Kutta-Merson integrator at constant step.
+// The scenes of scaling.h in Simbody: a tree of pins (recursive equations of order n), and free planar bodies on springs. Integrated by
+// Simbody's Runge-Kutta-Merson method with constant step.
 #include "scaling.h"
 
 #include <Simbody.h>
@@ -30,7 +30,7 @@ SimTK::Body::Rigid flat_body(double inertia, const Vec3& centre) {
 ScalingResult run(const SimbodyModel& scene, const SimTK::State& start, int bodies, const MobilizedBody& last, const Vec3& point) {
   SimTK::RungeKuttaMersonIntegrator integrator(scene.system);
   integrator.setFixedStepSize(k_scaling_step);
-  integrator.setAccuracy(0.9); // no step is rejected
+  integrator.setAccuracy(0.9); // so low that no step is rejected
   integrator.initialize(start);
   ScalingResult result;
   int done = 0;
@@ -38,7 +38,7 @@ ScalingResult run(const SimbodyModel& scene, const SimTK::State& start, int bodi
   result.step_us = least_step_us(bodies, [&](int steps) {
     done += steps;
     const double end = done * k_scaling_step;
-    // The first call reports the start and does nothing.
+    // The first call only reports the initial state.
     while (integrator.getTime() < end * (1.0 - 1e-12)) integrator.stepTo(end);
   });
   const double taken = integrator.getNumStepsTaken();

@@ -1,6 +1,5 @@
-// B1, B2 and B3 in Simbody, a general multibody program: trees of pins about z,
-// loops closed by a point held to a line along z (two equations each), its
-// Runge-Kutta-Merson integrator with projection.
+// B1, B2 and B3 in Simbody, a general multibody program. Mechanisms are trees of pins about z; a loop is closed by constraining a point to
+// a line along z (two equations). Integrated by Simbody's Runge-Kutta-Merson method with projection.
 
 #include "ladder.h"
 #include "mechanisms.h"
@@ -22,7 +21,7 @@ using SimTK::Vec3;
 
 const SimTK::UnitVec3 k_normal(0, 0, 1);
 
-// A flat body: half of the in-plane inertia about each of x and y.
+// Returns a flat body, whose moments of inertia about x and y are half of that about z.
 SimTK::Body::Rigid flat_body(double mass, double inertia, const Vec3& centre) {
   const SimTK::Inertia about_centre(0.5 * inertia, 0.5 * inertia, inertia);
   return SimTK::Body::Rigid(SimTK::MassProperties(mass, centre, about_centre.shiftFromMassCenter(centre, mass)));
@@ -34,9 +33,8 @@ struct SimbodyModel {
   SimTK::GeneralForceSubsystem forces{system};
 };
 
-// Projection after every step onto tight constraints costs little and keeps the
-// four-bars on their branch through the flat positions; with the integrator's own
-// choice they leave it. (Tighter than 1e-9 the integrator stops there.)
+// Projection after every step onto tight constraints costs little, and keeps the four-bars on their branch in the flat positions. With the
+// integrator's default they leave it. With tolerances below 1e-9 the integrator stops in these positions.
 enum class Projection { own_choice, every_step };
 constexpr double k_tight_constraints = 1e-9;
 
@@ -54,7 +52,7 @@ MechanismResult integrate(const SimbodyModel& scene, SimTK::State& state, double
     integrator.setFinalTime(end);
     while (integrator.getTime() < end && integrator.stepTo(end) != SimTK::Integrator::EndOfSimulation) {}
   } catch (const std::exception&) {
-    // The integrator failed; the error is that of the state reached.
+    // the integrator failed; the error is that of the last state
   }
   result.cpu_ms = 1e3 * (cpu_seconds() - start);
   state = integrator.getState();
@@ -94,7 +92,7 @@ MechanismResult run_four_bar_simbody(const FourBarExact& exact, double accuracy)
   }
   SimTK::State state = scene.system.realizeTopology();
   for (auto& r : rods) r.setRate(state, -1.0);
-  for (auto& b : bars) b.setRate(state, 1.0); // relative to its rod: stays level
+  for (auto& b : bars) b.setRate(state, 1.0); // rate relative to the rod: the bar stays horizontal
   MechanismResult result = integrate(scene, state, k_four_bar_end, accuracy, Projection::every_step);
   const double angle = rods[0].getAngle(state);
   result.error = std::max(std::abs(-std::sin(angle) - exact.x), std::abs(std::cos(angle) - exact.y));

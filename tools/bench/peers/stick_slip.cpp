@@ -1,5 +1,4 @@
-// B4a and B4b: one mass with Coulomb friction, ARKODE with its root finding.
-// The direction of slip is part of the mode; sticking is a separate mode.
+// B4a and B4b: one mass with Coulomb friction, integrated by ARKODE with its root finding. Modes: sticking, and slip in either direction.
 
 #include "arkode_runner.h"
 #include "mechanisms.h"
@@ -11,14 +10,14 @@
 namespace steplap::peers {
 namespace {
 
-constexpr double k_stiffness = 100.0;  // both problems, mass 1 kg
-constexpr double k_friction = 2.943;   // N, both problems
-constexpr double k_longest_step = 0.1; // s, so that no phase of slip is stepped over
+constexpr double k_stiffness = 100.0;  // N/m; the mass is 1 kg
+constexpr double k_friction = 2.943;   // friction force, N
+constexpr double k_longest_step = 0.1; // s; limits the step, so that no slip phase is missed
 
 struct Oscillator {
-  double belt;       // speed of the surface
-  double drive;      // amplitude of drive cos 3t
-  int direction = 0; // of slip relative to the surface; 0: sticking
+  double belt;       // speed of the surface, m/s
+  double drive;      // amplitude of the load drive cos 3t, N
+  int direction = 0; // direction of slip relative to the surface, ±1; 0 while sticking
 };
 
 double pull(const Oscillator& o, double t, double x) { return o.drive * std::cos(3.0 * t) - k_stiffness * x; }
@@ -31,7 +30,7 @@ int rates(double t, N_Vector y, N_Vector dydt, void* data) {
   return 0;
 }
 
-// Stick: the bound from either side. Slip: relative speed in the slip's direction.
+// Event functions. Sticking: distance of the force from both bounds. Slip: relative speed in the direction of slip.
 int roots(double t, N_Vector y, double* g, void* data) {
   const auto& o = *static_cast<const Oscillator*>(data);
   const double* u = data_of(y);

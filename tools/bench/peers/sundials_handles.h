@@ -1,6 +1,6 @@
 #pragma once
 
-// Owners of SUNDIALS objects, which free them.
+// Classes that own SUNDIALS objects and free them.
 
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
@@ -21,7 +21,7 @@ struct SundialsContext {
   SUNContext context = nullptr;
 };
 
-// A serial vector over memory that the caller keeps.
+// A SUNDIALS vector that uses memory of the caller.
 class VectorView {
 public:
   VectorView(int size, double* data, SUNContext context) : vector_(N_VMake_Serial(size, data, context)) {}

@@ -1,5 +1,5 @@
-// The hand-written transformer with SUNDIALS ARKODE: explicit Dormand-Prince 5(4),
-// SUNDIALS' own root finding, restarted at every event.
+// Integrates the hand-written transformer with ARKODE of SUNDIALS: explicit Dormand-Prince 5(4), its own root finding, restart after every
+// event.
 
 #include "sundials_handles.h"
 #include "transformer_programs.h"
@@ -12,8 +12,7 @@
 namespace steplap::peers {
 namespace {
 
-// Limit of the step, s. A foot that lifts and lands within one step would not be detected at the ends of the step (the shortest lift in
-// this scene lasts 6.4 ms).
+// Longest step, s. A foot that lifts and lands within one step would not be detected; the shortest lift in this scene takes 6.4 ms.
 constexpr double k_longest_step = 6e-3;
 
 class Run {
@@ -31,7 +30,7 @@ public:
     require(ARKStepSetRootDirection(memory_, falling.data()), "SetRootDirection");
     require(ARKStepSetMaxStep(memory_, k_longest_step), "SetMaxStep");
     require(ARKStepSetMaxNumSteps(memory_, 1000000), "SetMaxNumSteps");
-    // A function that starts a mode at zero is intended, so its warning is disabled.
+    // Disables the warning about event functions that are zero at the start of a mode, which is intended.
     require(ARKStepSetNoInactiveRootWarn(memory_), "SetNoInactiveRootWarn");
   }
   ~Run() { ARKStepFree(&memory_); }
@@ -50,7 +49,7 @@ public:
         if (flag != ARK_ROOT_RETURN) continue;
         handle_event();
         restart();
-        // A restart clears the stop time. Without setting it again the step would cross the kink.
+        // A restart clears the stop time, which prevents steps across kinks of the load.
         require(ARKStepSetStopTime(memory_, stop), "SetStopTime");
       }
     }
@@ -88,7 +87,7 @@ private:
     require(ARKStepSetInitStep(memory_, step), "SetInitStep");
   }
 
-  // Reinitialising clears the counters.
+  // Adds up the counters, which reinitialisation clears.
   void collect() {
     long steps = 0;
     long failed = 0;

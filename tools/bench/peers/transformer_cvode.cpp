@@ -1,5 +1,5 @@
-// The hand-written transformer with SUNDIALS CVODE: Adams-Moulton of order 1 to 12, fixed-point
-// iteration, SUNDIALS' own root finding, restarted at every event.
+// Integrates the hand-written transformer with CVODE of SUNDIALS: Adams-Moulton of order 1 to 12, fixed-point iteration, its own root
+// finding, restart after every event.
 
 #include "sundials_handles.h"
 #include "transformer_programs.h"
@@ -13,11 +13,10 @@
 namespace steplap::peers {
 namespace {
 
-// Limit of the step, s. A foot that lifts and lands within one step would not be detected at the ends of the step (the shortest lift in
-// this scene lasts 6.4 ms).
+// Longest step, s. A foot that lifts and lands within one step would not be detected; the shortest lift in this scene takes 6.4 ms.
 constexpr double k_longest_step = 2e-3;
 
-// A restart is of order 1: it needs far smaller steps than the last ones.
+// First step after a restart, relative to the last one. A restart begins with order 1 and needs much smaller steps.
 constexpr double k_restart_share = 0.02;
 
 class Run {
@@ -37,7 +36,7 @@ public:
     require(CVodeSetRootDirection(memory_, falling.data()), "SetRootDirection");
     require(CVodeSetMaxStep(memory_, k_longest_step), "SetMaxStep");
     require(CVodeSetMaxNumSteps(memory_, 1000000), "SetMaxNumSteps");
-    // A function that starts a mode at zero is intended, so its warning is disabled.
+    // Disables the warning about event functions that are zero at the start of a mode, which is intended.
     require(CVodeSetNoInactiveRootWarn(memory_), "SetNoInactiveRootWarn");
   }
   ~Run() {
@@ -59,7 +58,7 @@ public:
         if (flag != CV_ROOT_RETURN) continue;
         handle_event();
         restart();
-        // A restart clears the stop time. Without setting it again the step would cross the kink.
+        // A restart clears the stop time, which prevents steps across kinks of the load.
         require(CVodeSetStopTime(memory_, stop), "SetStopTime");
       }
     }
@@ -97,7 +96,7 @@ private:
     require(CVodeSetInitStep(memory_, k_restart_share * step), "SetInitStep");
   }
 
-  // Reinitialising clears the counters.
+  // Adds up the counters, which reinitialisation clears.
   void collect() {
     long steps = 0;
     long failed = 0;

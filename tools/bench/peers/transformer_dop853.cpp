@@ -1,6 +1,6 @@
-// Integrates the hand-written transformer with an own DOP853, PI step control and event location on the dense output. The dense output
-// (three evaluations) is built only if an event is possible: a switching function changed sign over the step, its Hermite cubic is negative
-// inside, or the friction force of a stage exceeded the bound of sticking.
+// Integrates the hand-written transformer with a separate DOP853, PI step control, and event location on the dense output. The dense output
+// costs three evaluations and is built only if an event is possible: an event function changed its sign over the step, its Hermite cubic is
+// negative inside, or the friction force at a stage exceeded the sticking limit.
 
 #include "dop853_step.h"
 #include "transformer_programs.h"
@@ -16,9 +16,9 @@ using Step = Dop853Step<k_states>;
 constexpr double k_safety = 0.9;
 constexpr double k_shrink = 0.2;
 constexpr double k_growth = 6.0;
-constexpr double k_beta = 0.04;        // PI control (Hairer, Wanner II, IV.2)
-constexpr double k_slope_probe = 1e-3; // of the step, for slopes of switching functions
-constexpr int k_pieces = 8;            // of a step that is searched for a double crossing
+constexpr double k_beta = 0.04;        // exponent of the PI control (Hairer, Wanner II, IV.2)
+constexpr double k_slope_probe = 1e-3; // interval for difference quotients of event functions, as a fraction of the step
+constexpr int k_pieces = 8;            // number of parts of a step that are searched for a double crossing
 
 class Run {
 public:
@@ -29,7 +29,7 @@ public:
 
   RunCounts integrate() {
     start_mode();
-    double proposal = k_breakpoints[0]; // at rest until braking begins
+    double proposal = k_breakpoints[0]; // first step, s: the machine is at rest until braking begins
     for (const double stop : k_breakpoints) {
       if (stop == k_breakpoints[1]) proposal = first_step();
       while (t_ < stop) proposal = advance(stop, proposal);
@@ -39,8 +39,8 @@ public:
   }
 
 private:
-  // Returns an estimate of the first step: the error is proportional to the eighth power of the step. For this scene it is correct within a
-  // factor of two.
+  // Returns the first step, s, from the error's proportionality to the eighth power of the step. It is correct within a factor of two for
+  // this scene.
   [[nodiscard]] double first_step() const { return 0.02 * std::pow(tolerance_, 0.125); }
 
   void start_mode() {
@@ -51,10 +51,11 @@ private:
 
   struct Watch {
     Switches value;
-    Switches slope; // per second; of sticking left at zero
+    Switches slope; // derivatives, 1/s; zero for those of sticking
   };
 
-  // k must hold the rates at y, evaluated last, so that the stick force is known.
+  // Evaluates all event functions and their derivatives. Precondition: k contains the rates at y from the last evaluation, so that the
+  // friction force is known.
   void watch(const State& y, const State& k, Watch& w) {
     model_.kinematic_switches(y.data(), w.value.data());
     model_.stick_switches(w.value.data());
@@ -66,7 +67,7 @@ private:
     if (model_.sticking()) w.slope[k_friction_upper] = w.slope[k_friction_lower] = 0.0;
   }
 
-  // One accepted step, or the part of it up to its first event. Returns the size of the next step, s.
+  // Accepts one step, or its part up to the first event. Returns the size of the next step, s.
   double advance(double stop, double h) {
     auto rates = [this](double t, const double* y, double* f) { model_.rates(t, y, f); };
     const bool last = t_ + 1.01 * h >= stop;
@@ -111,7 +112,7 @@ private:
     return std::min(next, k_after_event * first_step());
   }
 
-  // Returns true if a switching function may have reached zero in this step.
+  // Returns true if an event function may have reached zero within this step.
   bool suspect(const Watch& fresh, double h) {
     bool any = false;
     for (int i = 0; i < k_switches; ++i) {
@@ -136,7 +137,7 @@ private:
     const double c2 = 3.0 * (b - a) - 2.0 * da - db;
     const double c3 = da + db - 2.0 * (b - a);
     const double root = std::sqrt(std::max(0.0, c2 * c2 - 3.0 * c3 * da));
-    const double s = -da / (c2 + root); // stable form of the lower turning point
+    const double s = -da / (c2 + root); // lower turning point, in the form without cancellation
     if (!(s > 0.0 && s < 1.0)) return true;
     const double least = a + s * (da + s * (c2 + s * c3));
     return least < 0.25 * std::min(a, b);
@@ -163,8 +164,8 @@ private:
     return first;
   }
 
-  // Returns the first zero of a decreasing function in (0, 1], or 2 if there is none. A function that starts at zero (its mode has just
-  // begun) is considered from where it has become positive.
+  // Returns the first zero of a decreasing function in (0, 1]; 2 if there is none. A function that starts at zero, because its mode has
+  // just begun, is ignored until it has become positive.
   double slot_crossing(int slot, const Watch& fresh, double h) {
     const bool plain = old_.value[slot] > k_armed && fresh.value[slot] <= 0.0 && old_.slope[slot] < 0.0 && fresh.slope[slot] < 0.0;
     if (plain) return root(slot, 0.0, 1.0, old_.value[slot], fresh.value[slot], h);
@@ -180,7 +181,7 @@ private:
     return 2.0;
   }
 
-  // Illinois method. Ends when the estimate no longer moves, slightly beyond the zero.
+  // Locates a zero by the Illinois method. The result is slightly beyond the zero.
   double root(int slot, double a, double b, double ga, double gb, double h) {
     const double enough = std::max(1e-15, k_root_share * tolerance_);
     double last = b;

@@ -1,16 +1,17 @@
 #pragma once
 
-// Pose and velocity of body 1 relative to body 5, and the gaps of the contacts.
+// Pose and velocity of body 1 relative to body 5, and gaps of the contacts.
 
 #include "transformer_parameters.h"
 
 namespace steplap::peers::transformer {
 
 struct Turn {
-  double sine, cosine, versine; // versine: cos − 1
+  double sine, cosine, versine; // `versine`: cosine − 1
 };
 
-// Angles of this scene are milliradians. Short series are exact to rounding and, unlike divisions, can be evaluated in parallel.
+// Largest angle, rad, for which short series replace sine and cosine. They are exact to rounding and, unlike divisions, can be evaluated in
+// parallel; angles of this scene are a few mrad.
 inline constexpr double k_small = 0.01;
 
 inline Turn turn(double x) {
@@ -32,14 +33,14 @@ inline Ratios ratios(double x, const Turn& of_x) {
   return {1.0 + z * (0.5 + z * (5.0 / 24.0 + z * (61.0 / 720.0))), x + x * z * (1.0 / 3.0 + z * (2.0 / 15.0 + z * (17.0 / 315.0)))};
 }
 
-// Pose and velocity of body 1 seen from body 5, in the axes of body 5:
-// (rx, ry) from the centre of 5 to that of 1, phi = θ1 − θ5.
+// Pose and velocity of body 1 relative to body 5, in the axes of body 5: (rx, ry) from the centre of body 5 to that of body 1, and phi = θ1
+// − θ5.
 struct Kinematics {
-  double c, s, versine;          // of θ5
-  double cp, sp, sec, tan, sec2; // of phi
+  double c, s, versine;          // cosine, sine and versine of θ5
+  double cp, sp, sec, tan, sec2; // functions of phi
   double rx, ry, rxd, ryd, phid;
-  double ut, un; // relative velocity of the centres along and across the floor
-  double d;      // height of the centre of 1 over the floor line
+  double ut, un; // relative velocity of the centres, along and normal to the floor
+  double d;      // height of the centre of body 1 above the floor line
 };
 
 inline Kinematics kinematics(const double* y) {
@@ -69,8 +70,8 @@ inline Kinematics kinematics(const double* y) {
   return k;
 }
 
-// Gap of a contact without preload. Feet: δ = n·(p_A − p_B)/(n·a) with a the y
-// axis of body 1. Blocks: marker of the cover over the top line of body 1, a = n.
+// Returns the gap δ of a contact without preload, m. Feet: δ = n·(p_A − p_B)/(n·a), with a the y axis of body 1. Blocks: a = n, from the
+// marker on the cover to the top line of body 1.
 inline double gap(int contact, const Kinematics& k, const double* y) {
   const double place = k_place[contact];
   if (contact < 2) return k.d * k.sec + place * k.tan - k_height_active;

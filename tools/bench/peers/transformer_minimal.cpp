@@ -25,13 +25,13 @@ State Transformer::initial_state() const {
 
 void Transformer::rates(double t, const double* y, double* dydt) {
   ++evaluations_;
-  // Members are written once, at the end, because the compiler must assume that dydt may alias them.
+  // Derivatives are written at the end, because the compiler must assume that dydt may alias members.
   const Kinematics k = kinematics(y);
   const double w = y[10];
   const double s4 = y[5];
   const double s4d = y[11];
 
-  // Forces conjugate to rx, ry, φ and s4.
+  // Generalised forces for rx, ry, φ and s4.
   double px = 0.0, py = 0.0, pphi = 0.0, ps = 0.0;
   double normal = 0.0;
   const double foot_height = k.d * k.sec + (foot_offset_ - k_height_active);
@@ -40,7 +40,8 @@ void Transformer::rates(double t, const double* y, double* dydt) {
   const bool rear = contacts_[0] == ContactMode::closed;
   const bool front = contacts_[1] == ContactMode::closed;
   if (rear || front) {
-    // δ = height ± tan φ, its rate = foot_rate ± φ̇ sec² φ: half of both and their difference
+    // For both feet δ = height ± tan φ, with the rate foot_rate ± φ̇ sec² φ. Their forces are computed from half the sum and half the
+    // difference.
     const double mean = -k_foot_stiffness * foot_height - k_foot_damping * foot_rate;
     const double tilt = -k_foot_stiffness * k.tan - k_foot_damping * k.sec2 * k.phid;
     const double f_rear = rear ? mean - tilt : 0.0;
@@ -77,8 +78,8 @@ void Transformer::rates(double t, const double* y, double* dydt) {
     pphi += force * s_phi;
   }
 
-  // Generalised forces on the ground-fixed coordinates; inertia of the prescribed
-  // x5 and velocity terms of body 4 on the right.
+  // Generalised forces for the ground-fixed coordinates. The right-hand side includes the inertia of the prescribed x5 and the velocity
+  // terms of body 4.
   const double a5 = braking(t);
   const double fx = k.c * px - k.s * py;
   const double fy = k.s * px + k.c * py;
@@ -95,7 +96,7 @@ void Transformer::rates(double t, const double* y, double* dydt) {
                          k_mass_upper * (k.s * s4 + k.c * k_rise_upper) * a5;
   const double q_s = ps - k_mass_upper * (k_gravity * k.s + bx + k.c * a5);
 
-  // Active part: diagonal. Tank: s4 eliminated, two by two left.
+  // The mass matrix of the active part is diagonal. That of the tank is reduced to 2 × 2 by eliminating s4.
   const double m11 = k_mass_lower + k_mass_upper * k.c * k.c;
   const double m12 = k_mass_upper * k.c * s4;
   const double m22 = k_inertia_lower + k_inertia_upper + k_mass_upper * s4 * s4;
@@ -109,14 +110,14 @@ void Transformer::rates(double t, const double* y, double* dydt) {
   double at5 = (m11 * r2 - m12 * r1) * inv_det;
   double as4 = q_s * (1.0 / k_mass_upper) - k.s * ay5 + k_rise_upper * at5;
 
-  if (friction_ == FrictionMode::stick) { // J a = γ, λ from J M⁻¹ Jᵀ λ = γ − J a_f
+  if (friction_ == FrictionMode::stick) { // J a = γ gives J M⁻¹ Jᵀ λ = γ − J a_f
     const double jx = k.c - k.s * k.tan;
     const double jy = k.s + k.c * k.tan;
     const double j5 = k.ry - k.tan * k.rx - s_phi;
     const double bias =
         w * (2.0 * k.un - w * k.rx) - w * (2.0 * k.ut + w * k.ry) * k.tan +
         k.sec2 * k.phid * (2.0 * k.ryd + 2.0 * k.d * k.tan * k.phid + k_place[foot_] * k.sec * (1.0 + k.sp * k.sp) * k.phid);
-    const double u1 = -m22 * jy - m12 * j5; // M⁻¹ Jᵀ of the tank, times the determinant
+    const double u1 = -m22 * jy - m12 * j5; // tank part of M⁻¹ Jᵀ, times the determinant
     const double u2 = m11 * j5 + m12 * jy;
     const double mobility = k.sec2 * k_inv_mass + s_phi * s_phi * k_inv_inertia + (j5 * u2 - jy * u1) * inv_det;
     const double inv_mobility = 1.0 / mobility;

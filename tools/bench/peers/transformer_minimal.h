@@ -1,19 +1,16 @@
 #pragma once
 
-// The paper's transformer, hand-written for this one scene in minimal coordinates.
+// The paper's transformer, hand-written for this scene in minimal coordinates.
 //
-// Models: the active part with both outer limbs stuck to it (one rigid body),
-// the lower tank with the vehicle, whose x follows the braking pulse, and the
-// upper tank that slides on it. Six coordinates:
+// Bodies: the active part, including both outer limbs, as one rigid body; the lower tank with the vehicle, whose x follows the braking
+// pulse; the upper tank, which slides on it. Six coordinates:
 //   q = (X = x1 − x5(t), y1, θ1, y5, θ5, s4), state y = (q, q̇), SI and radians.
-// Joined by feet, wooden blocks, arresting devices, suspension, tank flexibility
-// and Coulomb friction under the feet, with the laws, signs and switching rules of
-// the physics page (compliant contacts without adhesion; stick located at the last
-// contact foot; direction of slip is part of the mode) and the values of the
-// paper scene. The limbs never slip here: valid while their wrench stays inside
-// the joint's friction capacity, as in both conditions.
+// Forces: feet, wooden blocks, arresting devices, suspension, tank flexibility, and Coulomb friction under the feet, with laws, signs and
+// mode changes as on the physics page (compliant contacts without adhesion; sticking at the last contact foot; the direction of slip is
+// part of the mode) and the values of the paper's scene. The limbs never slip, which is valid as long as their wrench is within the
+// friction capacity of the joints, as in both conditions.
 //
-// Shares no code with steplap: an independent check of it as well as a rival.
+// The program shares no code with steplap, and serves as an independent check and as a comparison of speed.
 
 #include <array>
 
@@ -24,23 +21,23 @@ struct Kinematics;
 }
 
 enum class Condition { no_interference, interference };
-enum class ContactMode { closed, held, open }; // held: δ < 0 with the force held at zero
+enum class ContactMode { closed, held, open }; // `held`: δ < 0, but the force is zero
 enum class FrictionMode { stick, slip_forward, slip_backward, none };
 
 inline constexpr int k_states = 12;
-inline constexpr int k_contacts = 4; // feet rear, front; wooden blocks rear, front
+inline constexpr int k_contacts = 4; // rear foot, front foot, rear wooden block, front wooden block
 inline constexpr double k_end_time = 0.8;
 inline constexpr std::array<double, 3> k_breakpoints = {0.05, 0.15, k_end_time};
 
-// Slots of the switching functions. Each is positive while its mode lasts.
-inline constexpr int k_leave = 0;          // + contact: closed → held, held → open, open → closed
-inline constexpr int k_return = 4;         // + contact: held → closed
-inline constexpr int k_friction_upper = 8; // stick: μN − λ; slip: σ ṡ
-inline constexpr int k_friction_lower = 9; // stick: μN + λ
+// Indices of the event functions, each of which is positive during its mode.
+inline constexpr int k_leave = 0;          // plus number of the contact: from closed to held, from held to open, from open to closed
+inline constexpr int k_return = 4;         // plus number of the contact: from held to closed
+inline constexpr int k_friction_upper = 8; // sticking: μN − λ; slip: σ ṡ
+inline constexpr int k_friction_lower = 9; // sticking: μN + λ
 inline constexpr int k_foot_switch = 10;
 inline constexpr int k_switches = 11;
 
-// Value of switching functions that are not monitored in the present mode: positive, so that they never fire.
+// Value of event functions that do not exist in the present mode; it never becomes negative.
 inline constexpr double k_unwatched = 1.0;
 
 using State = std::array<double, k_states>;
@@ -58,26 +55,25 @@ public:
 
   [[nodiscard]] State initial_state() const;
 
-  // Computes ẏ in the present modes, smoothly extended beyond their limits. Stores the normal force of the feet and, while sticking, the
-  // multiplier.
+  // Computes ẏ with the laws of the present modes, which are smooth also beyond the limits of the modes. Stores the normal forces of the
+  // feet and, while sticking, the friction force.
   void rates(double t, const double* y, double* dydt);
 
-  // Switching functions; forces scaled by 1e5 N, lengths by 1e-3 m, speeds by
-  // 0.1 m/s, so that all are of order one. Costs an evaluation in stick only.
+  // Computes the event functions, scaled by 1e5 N, 1e-3 m and 0.1 m/s to be of order one. Requires an evaluation only while sticking.
   void switches(double t, const double* y, double* g);
   // As switches(), but without the functions of sticking, which need an evaluation.
   void kinematic_switches(const double* y, double* g) const;
-  // Only the functions of sticking, from the last evaluation.
+  // Computes the event functions of sticking from the last evaluation.
   void stick_switches(double* g) const;
   [[nodiscard]] double switch_value(int slot, double t, const double* y);
 
-  // Changes the mode for a switching function that has reached zero.
+  // Changes the mode after event function `slot` has reached zero.
   void cross(int slot, double t, State& y);
 
   [[nodiscard]] bool sticking() const { return friction_ == FrictionMode::stick; }
   [[nodiscard]] long evaluations() const { return evaluations_; }
-  // Returns the smallest μN − |λ| of all evaluations since the last reset. It shows that sticking ended inside a step even if it holds at
-  // both ends.
+  // Returns the smallest μN − |λ| over all evaluations since reset_stick_margin(). If it is negative, sticking ended within the step, even
+  // if it is possible at both ends.
   [[nodiscard]] double stick_margin() const { return stick_margin_; }
   void reset_stick_margin() { stick_margin_ = 1e300; }
 

@@ -1,5 +1,4 @@
-// Contact and friction modes of the hand-written transformer: switching functions, mode changes at their zeros, and the decision between
-// stick and slip.
+// Contact and friction modes of the hand-written transformer: event functions, mode changes, and the choice between sticking and slip.
 
 #include "transformer_kinematics.h"
 
@@ -15,7 +14,7 @@ double Transformer::force_law(int contact, const Kinematics& k, const double* y)
   return -k_stiffness[contact] * effective_gap(contact, k, y) - k_damping[contact] * gap_rate(contact, k, y);
 }
 
-// Returns the rate of s = rx + d tan φ + L sec φ, the position of the tip along the floor.
+// Returns the velocity of the foot's tip along the floor, ṡ with s = rx + d tan φ + L sec φ, m/s.
 double Transformer::slide_speed(const Kinematics& k) const {
   return k.rxd + k.ryd * k.tan + (k.d + k_place[foot_] * k.sp) * k.sec2 * k.phid;
 }
@@ -87,7 +86,7 @@ void Transformer::try_stick(double t, State& y) {
   friction_ = lambda_ > 0.0 ? FrictionMode::slip_backward : FrictionMode::slip_forward;
 }
 
-// Repeats the decision on friction after a jump of the contact forces or a change of the contact foot.
+// Chooses the friction mode again after a jump of the contact forces or a change of the contact foot.
 void Transformer::settle_friction(double t, State& y) {
   const bool touching = contacts_[0] == ContactMode::closed || contacts_[1] == ContactMode::closed;
   if (!touching) {
@@ -108,12 +107,12 @@ void Transformer::cross(int slot, double t, State& y) {
     foot_ = 1 - foot_;
     settle_friction(t, y);
   } else if (slot == k_friction_upper && !sticking()) {
-    // Sets the rate of s exactly to zero, so that sticking starts without drift from rounding.
+    // Sets ṡ exactly to zero, because rounding would cause a drift while sticking.
     const Kinematics k = kinematics(y.data());
     y[6] -= slide_speed(k) / (k.c - k.s * k.tan);
     try_stick(t, y);
   } else if (slot == k_friction_upper) {
-    friction_ = FrictionMode::slip_backward; // λ = +μN pushes forward
+    friction_ = FrictionMode::slip_backward; // friction pushes forward with λ = +μN
   } else if (slot == k_friction_lower) {
     friction_ = FrictionMode::slip_forward;
   } else if (slot >= k_return) {

@@ -1,4 +1,4 @@
-// The columns of the reference files, from a state of the hand-written transformer.
+// Computes the columns of the reference files from a state of the hand-written transformer.
 
 #include "transformer_kinematics.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The three programs that integrate the hand-written transformer, one signature.
+// Three programs that integrate the hand-written transformer, with a common interface.
 
 #include "transformer_minimal.h"
 
@@ -13,7 +13,7 @@ struct Happening {
   const char* what;
 };
 
-// Filled if requested: outputs at 1 ms, 2 ms … 0.8 s, and the events.
+// Results of a run: outputs every 1 ms up to 0.8 s, and the events. Filled if requested.
 struct Record {
   std::vector<Outputs> samples;
   std::vector<Happening> happenings;
@@ -29,14 +29,14 @@ struct RunCounts {
 inline constexpr double k_sample_interval = 1e-3;
 inline constexpr int k_samples = 800;
 
-// Tolerance: error per step, as a share of each coordinate's range in this scene.
+// A program. `tolerance`: error per step, relative to the ranges k_scale of the coordinates.
 using TransformerProgram = RunCounts (*)(Condition, double tolerance, Record*);
 
 [[nodiscard]] RunCounts run_transformer_dop853(Condition, double tolerance, Record* record);
 [[nodiscard]] RunCounts run_transformer_arkode(Condition, double tolerance, Record* record);
 [[nodiscard]] RunCounts run_transformer_cvode(Condition, double tolerance, Record* record);
 
-// Ranges of the coordinates and of their rates, to scale errors with.
+// Ranges of the coordinates and of their rates in this scene, m, rad, m/s, rad/s.
 inline constexpr State k_scale = {1e-3, 2e-4, 2e-3, 2e-4, 2e-3, 3e-3, 0.04, 0.01, 0.05, 0.02, 0.05, 0.08};
 
 } // namespace steplap::peers

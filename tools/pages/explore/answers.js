@@ -1,11 +1,11 @@
-// Requests of the page to its server. One run is in progress at a time, and the next request is for the newest values: values in between
-// are never computed, the last ones always are.
+// Sends requests of the page to its server. Only one run is in progress at a time; the next request has the newest values. Intermediate
+// values may be skipped, but the last ones are always computed.
 steplap.Answers = class Answers {
   constructor(onAnswer, onSilence) {
     Object.assign(this,
       { onAnswer, onSilence, page: Math.random().toString(36).slice(2), last: 0, shown: 0, wanted: null, underway: new Set(), sentAt: 0 });
   }
-  // ms; after this time the newer values are sent although a run is in progress, which the server then aborts.
+  // ms; if a run takes longer, newer values are sent, and the server aborts the run
   static get patience() { return 150; }
   async post(path, body) {
     const reply = await fetch(path, {
@@ -23,7 +23,7 @@ steplap.Answers = class Answers {
     if (!reply.ok) throw new Error(await reply.text());
     return reply.json();
   }
-  // `request`: { model, values, is_settled }; `since`: time of the user's action, ms of performance.now().
+  // Requests a run. `request`: { model, values, is_settled }. `since`: time of the user's action, ms, from performance.now().
   want(request, since = performance.now()) {
     this.wanted = { request, since, number: ++this.last };
     this.next();

@@ -1,12 +1,12 @@
 // The page: sliders request runs, and the answers are drawn next to the old state.
 (() => {
   const make = steplap.make, at = (id) => document.getElementById(id);
-  const settleAfter = 250; // ms without a change; then errors are estimated and slow drawings are made
+  const settleAfter = 250; // ms without a change after which errors are estimated and slow drawings are updated
   let version = 0, models = [], model = 0, before = null, now = null, isKept = false, t = 0, end = 1, isUntouched = true, settled = null;
   const scenes = [], latencies = [];
   let view = null, plots = null, timeline = null;
 
-  // --- what is wrong, and what is under way ---------------------------------------------------------------
+  // --- errors and progress --------------------------------------------------------------------------------
   const troubles = { file: [], run: [], server: [] };
   function showTroubles() {
     const place = (e) => [e.file, e.line || '', e.line && e.column ? e.column : ''].filter((v) => v !== '').join(':');
@@ -23,7 +23,7 @@
       at('troubles').append(make('p', { class: 'note' }, 'There is no run with these values. What is shown below is the last one.'));
   }
 
-  // --- asking -----------------------------------------------------------------------------------------------
+  // --- requests ---------------------------------------------------------------------------------------------
   function onSilence() {
     troubles.server = [{ message: 'steplap does not answer: it has ended, or is being stopped.' }];
     showTroubles();
@@ -38,7 +38,7 @@
     settleLater();
     showMapHere();
   }
-  // A slow run is announced, so that the last picture is not taken for its result.
+  // Announces a slow run, so that the previous picture is not mistaken for its result.
   let waiting = null;
   function tellWaiting() {
     clearTimeout(waiting);
@@ -62,7 +62,7 @@
   };
   function onAnswer(answer, asked) {
     if (asked.request.model !== model) return;
-    // A run of a file that was saved meanwhile cannot be compared with the old state: both are requested again, or already are.
+    // A run of a newer version of the file cannot be compared with the old state. Both are requested again, if they were not already.
     if (!answer.errors && !isKept && answer.version !== versionOfOld) return;
     clearTimeout(waiting);
     at('pace').textContent = '';
@@ -78,7 +78,7 @@
     draw(old, isSettled);
     if (!isSettled) notePace(asked.since);
   }
-  // Measures the time from the user's action until the browser has painted the answer.
+  // Measures the time from the user's action until the browser has painted the result.
   function notePace(since) {
     requestAnimationFrame(() => {
       const channel = new MessageChannel();
@@ -95,7 +95,7 @@
 
   // --- old and new state ------------------------------------------------------------------------------------
   let versionOfOld = 0,
-      asksOfOld = 0; // version of the file for which the old state was last requested; number of such requests in progress
+      asksOfOld = 0; // version of the file for which the old state was last requested; number of these requests in progress
   async function askOld() {
     ++asksOfOld;
     try {
@@ -142,7 +142,7 @@
     if (view) view.listen(scene);
     return scene;
   }
-  // `old`: the run that was previously drawn as the new state.
+  // run that was drawn as the new state before
   let drawnBefore = null;
   function draw(old, isSettled) {
     const runs = [before, now], isWhole = drawnBefore !== before;
@@ -162,7 +162,7 @@
     steplap.story.build(at('story'), runs, go);
     at('time').max = String(end);
     at('worst').hidden = steplap.overview.worstOf(runs) === null;
-    // While a slider is dragged the new machine keeps the view of the last one; at rest both are fitted to the picture.
+    // The view of the new machine is kept while a slider is dragged; afterwards both machines are fitted to the picture.
     if (isSettled || !like) fit();
     else {
       scenes[1].fitLike(like);
@@ -197,7 +197,7 @@
     buildTimeline();
   }
   function buildTimeline() {
-    // A new container for the lanes, because the listeners of the old one are removed with it.
+    // A new element, because the listeners of the old one are removed with it.
     const lanes = make('div', { id: 'lanes' });
     at('lanes').replaceWith(lanes);
     timeline = new steplap.Timeline(
@@ -268,7 +268,7 @@
     onChoose: chooseOnMap,
     ask: async (x, y, cells) => {
       const values = sliders.changed();
-      if (!answers.isIdle) return { cells: [] }; // runs have priority
+      if (!answers.isIdle) return { cells: [] }; // a run has priority over the map
       try {
         return await answers.post('cells', { model, values, x, y, cells });
       } catch {
@@ -277,7 +277,7 @@
     }
   });
   const isMapping = () => at('map-start').getAttribute('aria-pressed') === 'true';
-  // A map belongs to the other values: if one of them changes, it starts again.
+  // The map is restarted if any other value changes.
   let mappedWith = '';
   const othersThanAxes = () => JSON.stringify([
     model, version, at('map-x').value, at('map-y').value,
@@ -358,7 +358,7 @@
     sliders.set(one.sliders);
     offerAxes();
   }
-  // A saved file has a new version: its machine is drawn, or its errors are shown.
+  // Waits for new versions of the files. Draws the machine of the new version, or shows its errors.
   async function follow() {
     for (;;) {
       try {
@@ -379,7 +379,7 @@
         }
         showModel();
         if (!models[model].errors.length) await askOld();
-        else versionOfOld = version; // the last machine that could be read remains
+        else versionOfOld = version; // the last valid machine stays visible
       } catch {
         onSilence();
         await new Promise((resolve) => setTimeout(resolve, 2000));

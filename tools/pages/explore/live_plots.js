@@ -1,5 +1,5 @@
-// Curves of the old and the new state in one figure, redrawn while a slider is dragged: visible figures at once, others when they come into
-// view.
+// Curves of the old and the new state in one figure, redrawn while a slider is dragged. Visible figures are redrawn at once, others when
+// they become visible.
 steplap.LivePlots = class LivePlots extends steplap.Plots {
   constructor(grid, onTime) {
     super(grid, onTime);
@@ -25,13 +25,13 @@ steplap.LivePlots = class LivePlots extends steplap.Plots {
     super.build();
     for (const plot of this.plots) this.watcher.observe(plot.box);
   }
-  // Called before another object replaces this one.
+  // Releases the figures before this object is replaced.
   end() {
     this.watcher.disconnect();
     for (const plot of this.plots)
       if (plot.graph) plot.graph.destroy();
   }
-  // Sets the runs to draw. Figures are rebuilt if their channels differ.
+  // Sets the two runs to be drawn. Rebuilds the figures if their channels differ.
   setRuns(from, to) {
     const runs = steplap.data.runs, full = [0, Math.max(...runs.map((r) => r.end))];
     const isWhole = this.window[0] === this.full[0] && this.window[1] === this.full[1], isSame = full[1] === this.full[1];
@@ -46,7 +46,7 @@ steplap.LivePlots = class LivePlots extends steplap.Plots {
     this.figures = steplap.figures.of(steplap.data.runs);
     this.build();
   }
-  // Returns true if the runs would now have other figures. While a slider is dragged the present ones remain.
+  // Returns true if the runs require other figures than those shown, which are kept while a slider is dragged.
   get isOutdated() {
     const name = (f) => `${f.name}\n${f.channels.join()}`;
     return steplap.figures.of(steplap.data.runs).map(name).join('\n') !== this.figures.map(name).join('\n');

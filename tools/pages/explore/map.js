@@ -1,4 +1,4 @@
-// A map over two values: how near the run comes to its limits at each pair. It is filled in from coarse to fine.
+// A map of the utilisation over two values, filled from coarse to fine.
 steplap.ValueMap = class ValueMap {
   // `ask(x, y, cells)` returns a promise of the server's results for some cells, in their order. `onChoose(x, y)` is called when the user
   // selects a pair.
@@ -27,7 +27,7 @@ steplap.ValueMap = class ValueMap {
   }
   static get count() { return 24; } // cells per side
   static get atOnce() { return 100; } // cells per request
-  // Order of the cells: every fourth one of every fourth row first, then those in between.
+  // Returns the order in which cells are computed: first every fourth cell of every fourth row, then those between.
   static order() {
     const list = [], seen = new Set(), n = ValueMap.count;
     for (const step of [8, 4, 2, 1])
@@ -51,7 +51,7 @@ steplap.ValueMap = class ValueMap {
     if (this.axes) this.onChoose(this.valueAt(this.axes[0], i), this.valueAt(this.axes[1], j));
   }
 
-  // Axes: { path, label, unit, least, most, isWhole }. Fills the map until it is stopped or restarted.
+  // Fills the map until it is complete, stopped or restarted. An axis is { path, label, unit, least, most, isWhole }.
   async start(axes) {
     const generation = ++this.generation;
     this.axes = axes;
@@ -69,21 +69,21 @@ steplap.ValueMap = class ValueMap {
         for (const name of Object.keys(cell.shares || {})) this.names.add(name);
       });
       left = left.slice(answer.cells.length);
-      if (!answer.cells.length) await new Promise((resolve) => setTimeout(resolve, 60)); // the server had other work
+      if (!answer.cells.length) await new Promise((resolve) => setTimeout(resolve, 60)); // waits, because the server was busy with a run
       this.offer();
       this.draw();
     }
   }
   stop() { ++this.generation; }
   get isWhole() { return this.cells.size === ValueMap.count ** 2; }
-  // Offers the quantities to show: the verdict, the nearest limit, or one limit.
+  // Updates the list of quantities to choose from: verdict, largest utilisation, or that of one limit.
   offer() {
     const had = this.what.value, wanted = ['verdict', 'nearest limit', ...this.names];
     if (this.what.options.length === wanted.length) return;
     this.what.replaceChildren(...wanted.map((name) => steplap.make('option', { value: name }, name)));
     this.what.value = wanted.includes(had) ? had : 'verdict';
   }
-  // Returns the utilisation that is shown; undefined if there is none.
+  // Returns the selected utilisation of a cell; undefined if it has none.
   shareOf(cell) {
     const shares = cell.shares || {};
     if (this.what.value in shares) return shares[this.what.value];
@@ -96,7 +96,7 @@ steplap.ValueMap = class ValueMap {
       return named({ hold: 'good', inspect: 'warn-bar', reject: 'bad' }[cell.verdict] || 'plain');
     const share = this.shareOf(cell);
     if (!Number.isFinite(share)) return named('plain');
-    // Colours: light to dark green up to the limit, orange to red beyond it.
+    // light to dark green up to the limit, orange to red beyond it
     if (share <= 1) return `hsl(165 70% ${Math.round(88 - 56 * Math.max(0, share))}%)`;
     return `hsl(${Math.round(32 - 32 * Math.min(1, share - 1))} 85% ${Math.round(58 - 24 * Math.min(1, share - 1))}%)`;
   }
@@ -121,7 +121,7 @@ steplap.ValueMap = class ValueMap {
     if (this.axes && this.here) this.cross(context, size);
     this.tell();
   }
-  // Marks the values of the sliders.
+  // Draws a cross at the values of the sliders.
   cross(context, size) {
     const n = ValueMap.count, place = this.axes.map((a, k) => ((this.here[k] - a.least) / (a.most - a.least)) * n * size), x = place[0],
           y = n * size - place[1];

@@ -1,6 +1,6 @@
-// A slider with a number for each value that is varied, and a search for further values. Numbers are SI.
+// Sliders with number fields for the varied values, and a search for further values. Numbers are SI.
 steplap.Sliders = class Sliders {
-  // `onChange(path, value)` is called during dragging, with the file's value when the value is reset.
+  // `onChange(path, value)` is called while a slider is dragged, and with the file's value after a reset.
   constructor(box, { search, found, onChange }) {
     Object.assign(this, { box, search, foundBox: found, onChange, given: new Map(), shown: [], rows: new Map(), values: new Map() });
     search.addEventListener('input', () => this.find());
@@ -19,7 +19,7 @@ steplap.Sliders = class Sliders {
         (_, field, items) => `: ${field.replace(/_/g, ' ')}${items.replace(/\.(\d+)/g, (__, i) => ` ${Number(i) + 1}`)}`);
   }
 
-  // Sets the values of a model that has just been read. Sliders already shown and changed values remain.
+  // Sets the sliders of a model that was read again. Visible sliders and changed values are kept.
   set(sliders) {
     this.given = new Map(sliders.map((s) => [s.path, s]));
     this.shown = this.shown.filter((path) => this.given.has(path));
@@ -29,7 +29,7 @@ steplap.Sliders = class Sliders {
     if (!this.shown.length) {
       const wanted = sliders.filter((s) => groups.includes(s.group)).sort((a, b) => groups.indexOf(a.group) - groups.indexOf(b.group));
       const parameters = wanted.filter((s) => s.group === 'parameters').length;
-      // If there are too many, some of each group are shown.
+      // If there are too many values, some of each group are shown.
       const most = Math.max(Sliders.first, parameters), chosen = wanted.slice(0, parameters), rest = wanted.slice(parameters);
       for (let round = 0; chosen.length < most && chosen.length < wanted.length; ++round)
         for (const group of groups) {
@@ -116,7 +116,7 @@ steplap.Sliders = class Sliders {
     this.show(slider.path);
     this.onChange(slider.path, value);
   }
-  // Sets a value from elsewhere: the map, or a reset of all values.
+  // Sets a value that was changed elsewhere, by the map or by a reset of all values.
   put(path, value) { this.change(this.given.get(path), value); }
   reset() {
     this.values.clear();
@@ -142,7 +142,7 @@ steplap.Sliders = class Sliders {
     row.was.textContent =
       isChanged ? `was ${steplap.data.quantity(slider.value, slider.unit, 4)}` : steplap.data.quantity(value, slider.unit, 4);
   }
-  // Shows a slider for a further value.
+  // Adds the slider of a value found by the search.
   add(path) {
     if (!this.given.has(path)) return;
     if (!this.shown.includes(path)) {

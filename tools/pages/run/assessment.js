@@ -107,7 +107,8 @@
     A.records.map((r) => r.file).join(', '), (A.models.length ? A.models.map((m) => m.name) : A.statics.map((s) => s.model)).join(', ')
   ].filter((t) => t).join(' · ');
   const sheet = steplap.assessmentSheet();
-  const kept = steplap.sheet.fit(sheet.contentOf, sheet.room); // before the page is large, because fitting lays it out a dozen times
+  // before the rest of the page is built, because each of a dozen layouts would take longer with it
+  const kept = steplap.sheet.fit(sheet.contentOf, sheet.room);
   decision();
   worstEvent();
   events();

@@ -12,7 +12,7 @@ steplap.assessment = (() => {
 
   const verdicts = ['reject', 'inspect', 'open', 'hold'];
   const rankOf = (verdict) => (verdicts.includes(verdict) ? verdicts.indexOf(verdict) : 2);
-  // Result of one model for one event.
+  // Returns one sentence or more about the result of one model for one event.
   function said(m) {
     const joints = list(m.joints), slipping = joints.filter((j) => j.slips || j.came_apart).map((j) => j.name),
           byMargin = joints.filter((j) => isKnown(j.margin)).sort((a, b) => a.margin - b.margin);
@@ -56,7 +56,7 @@ steplap.assessment = (() => {
   const inG = (value) => `${String(Number((value / gravity).toPrecision(3))).replace('-', '−')}\u00a0g`;
   const acceleration = (value, unit = 'm/s^2') =>
     (isKnown(value) ? `${one(value, unit)}${unit === 'm/s^2' ? ` (${inG(value)})` : ''}` : '–');
-  // Text of a peak, always with the bandwidth to which it was read.
+  // Returns a peak with the bandwidth at which it was measured.
   const peakText = (p, brief) => `${p.axis}: ${brief && p.unit === 'm/s^2' ? inG(p.value) : acceleration(p.value, p.unit)} up to ${
     isKnown(p.bandwidth) ? one(p.bandwidth, 'Hz')
                          : 'an unknown bandwidth'}${!brief && isKnown(p.velocity_change) ? `, Δv ${one(p.velocity_change, 'm/s')}` : ''}`;
@@ -67,13 +67,13 @@ steplap.assessment = (() => {
   const slipText = (m) => (m.slipping.length ? `${m.joints.some((j) => j.came_apart) ? 'comes apart' : 'slips'}: ${m.slipping.join(', ')}`
       : m.joints.length ? 'no joint slips'
                         : 'no joints');
-  // Formats a margin. That of a joint that slips has no error, that of a joint with hardly any load is only "over 1000".
+  // Formats a margin. A joint that slips has no error; a joint with hardly any load is shown as "over 1000".
   const margin = (j) => (j.margin > 1000 ? 'over\u00a01000' : one(j.margin, '', j.slips ? {} : { error: j.error, limit: 1 }));
   const marginText = (m) => (m.weakest ? margin(m.weakest) : '–');
   const slidText = (value) => one(value, 'm', { rounding: 1e-9 });
   const timeText = (e) => (e.clock ? String(e.clock).replace('T', ' ').replace(/\.0+$/, '') : isKnown(e.time) ? one(e.time, 's') : '–');
 
-  // Contradictions within the file, shown at the head of the page because a reader would sign for it.
+  // Returns contradictions within the file. They are shown at the head of the page, because the reader signs it.
   function contradictions() {
     if (!given) return [];
     const found = [];
@@ -99,14 +99,14 @@ steplap.assessment = (() => {
     }
     return found.slice(0, 8);
   }
-  // The decision, or the worst verdict of the static proofs, with its reason.
+  // Returns the decision, or the worst verdict of the static proofs, with its reason.
   function answer() {
     if (given) return { verdict: given.decision, reason: given.reason || '' };
     const verdict = ['reject', 'open', 'hold'].find((v) => statics.some((s) => s.verdict === v)) || 'open';
     const text = (s) => (statics.length > 1 ? `${s.model}: ` : '') + (s.reason || steplap.statics.weakestText(s));
     return { verdict, reason: statics.map(text).join(' ') };
   }
-  // The record states range and bandwidth of its recorder; they fill fields that the papers leave empty.
+  // Returns range and bandwidth of the recorder from the record, for fields that the shipping data leaves empty.
   const recorderOf = (record) => ({
     record: record.file,
     range: isKnown(record.sensor_range) ? inG(record.sensor_range) : '',

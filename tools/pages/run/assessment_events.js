@@ -1,4 +1,4 @@
-// Events as table rows and small curves.
+// Table rows and small curves for the events of an assessment.
 steplap.events = (() => {
   const make = steplap.make, { table } = steplap.tables, { one, percent, isKnown } = steplap.numbers, A = steplap.assessment;
 
@@ -39,7 +39,7 @@ steplap.events = (() => {
     return box;
   }
 
-  // Curve of the recorded window, scaled to the event: x solid, y dashed, z dotted.
+  // Draws the recorded window, scaled to the event: x solid, y dashed, z dotted.
   function curve(e) {
     const f = e.figure || {}, times = A.list(f.times),
           named = ['x', 'y', 'z'].filter((axis) => A.list(f[axis]).length === times.length && times.length > 1);
@@ -86,7 +86,7 @@ steplap.events = (() => {
   }
   const curves = (events) => make('div', { class: 'curves' }, ...events.map(curve).filter((c) => c));
 
-  // All details of one event.
+  // Returns all details of one event.
   function details(e) {
     const box = make('div', {});
     const peaks =
@@ -122,7 +122,7 @@ steplap.events = (() => {
     }
     return box;
   }
-  // The content is built when the reader opens it, because a voyage may have hundreds of events.
+  // Builds the details only when the reader opens them, because a voyage may have hundreds of events.
   function fold(e) {
     const box = make('details', { class: 'event', 'data-event': e.number },
       make('summary', {},

@@ -3,13 +3,13 @@
 steplap.eventMachine = (() => {
   const A = steplap.assessment;
   const isPose = (pose) => Array.isArray(pose) && pose.length === 3 && pose.every(Number.isFinite);
-  // Returns the model of an event that has poses and a drawing and the worst verdict; the first one if several are equal.
+  // Returns the result with the worst verdict among the models of an event that have poses and a drawing; the first one of equals.
   function gravest(e) {
     const isDrawn = (m) => A.models.some((model) => model.name === m.model && model.drawing);
     const known = e.models.filter((m) => isDrawn(m) && Object.values(m.poses || {}).some(isPose));
     return known.sort((a, b) => A.rankOf(a.verdict) - A.rankOf(b.verdict))[0] || null;
   }
-  // Returns { picture, text }, or null if no run was made or written.
+  // Returns { picture, text } for an event; null if no model has poses.
   function of (e, columns) {
     const said = gravest(e);
     if (!said) return null;

@@ -1,5 +1,6 @@
-// The sheet of an assessment: papers, decision, worst events, dependence of the decision, assumptions, criteria, findings on arrival. The
-// sheet of a static proof alone: drawing, cases, reactions of each part. Lines that do not fit are counted and are on the following sheets.
+// The sheet of an assessment: shipping data, decision, worst events, dependence of the decision, assumptions, criteria, findings on
+// arrival. The sheet of a static proof: drawing, load cases, reactions of each part. Lines that do not fit are counted and are on the
+// following sheets.
 steplap.assessmentSheet = () => {
   const make = steplap.make, { table } = steplap.tables, { one, percent, isKnown } = steplap.numbers, A = steplap.assessment;
   const { short, part, rest, bullets, orBlank, named, drawing } = steplap.sheet;
@@ -28,7 +29,7 @@ steplap.assessmentSheet = () => {
     ['reasons', 2], ['joints', 2], ['events', 3], ['tests', 2], ['assumptions', 2], ['reactions', 6], ['texts', 30], ['cases', 4]
   ];
 
-  let still; // kept, because drawing is slow and the sheet is laid out a dozen times
+  let still; // drawn once, because drawing is slow and the sheet is laid out a dozen times
   const worstMachine = () => (still = still === undefined ? steplap.eventMachine.of(A.worst[0], 3) : still);
   const joined = (parts) => parts.flatMap((p, i) => (i ? [' · ', ...p] : p));
   function papers(keep) {
@@ -52,7 +53,7 @@ steplap.assessmentSheet = () => {
     const pictures = [...(still ? [still.picture] : []), ...(curve ? [curve] : [])];
     return make('div', { class: `papers pictures-${pictures.length}` }, make('div', {}, ...left), ...pictures);
   }
-  // Blank lines for the findings that the receiver writes by hand.
+  // Returns a line to be filled in by hand by the receiver.
   const blank = (what) => make('p', {}, `${what} `, make('span', { class: 'blank' }));
   const found = () => part('Found on arrival',
     make('div', { class: 'found' },
@@ -97,7 +98,7 @@ steplap.assessmentSheet = () => {
     return part('Criteria and their sources', make('p', {}, c ? short(texts, 1.5 * keep.texts) : 'No criteria are named.'),
       ...bullets(A.reasons.map((r) => sourced(r, keep.texts)), keep.reasons, 4 * keep.texts, 'reasons'));
   }
-  // Content that flows in two columns.
+  // Returns the parts that flow in two columns.
   function notes(keep) {
     const listed = (title, texts, kept, what, none) =>
       part(title, ...(texts.length ? bullets(texts, kept, keep.texts, what) : [make('p', {}, none)]));
@@ -113,7 +114,7 @@ steplap.assessmentSheet = () => {
   }
 
   // --- static proofs ---------------------------------------------------------------------------------
-  // Forces and couples of each part in each case, the highest utilisation first.
+  // Returns a table of the forces and couples of each part in each case, the highest utilisation first.
   const isReaction = (r) => r.unit === 'N' || r.unit === 'N m';
   function reactions(p, keep) {
     const cases = A.list(p.cases), rows = new Map();
@@ -127,7 +128,8 @@ steplap.assessmentSheet = () => {
     const sorted = [...rows.values()].sort((a, b) => (b.share ?? -1) - (a.share ?? -1));
     if (!sorted.length) return [];
     const rounding =
-      1e-9 * Math.max(...sorted.flatMap((r) => r.values.filter(isKnown).map(Math.abs))); // rounding of the search for equilibrium
+      // smaller values are rounding errors of the equilibrium
+      1e-9 * Math.max(...sorted.flatMap((r) => r.values.filter(isKnown).map(Math.abs)));
     const allowed = (r) => (isKnown(r.allowed) ? one(r.allowed, r.unit) : 'not limited');
     const cells = (r) => [...r.values.map((v) => one(v, r.unit, { rounding })), allowed(r), percent(r.share)];
     const heads = ['part', ...cases.map((c) => short(c.name, 24)), 'allowed', 'used'];

@@ -1,4 +1,5 @@
-// The static proof: its cases, and the acceleration in each direction at which something first slips, slides, lifts or reaches an end.
+// A static proof: its cases, and for each direction the acceleration at which something first slips, slides or lifts, or equilibrium is
+// lost.
 steplap.statics = (() => {
   const make = steplap.make, { table } = steplap.tables, { one, percent, isKnown } = steplap.numbers, A = steplap.assessment;
   const kinds = {
@@ -9,7 +10,7 @@ steplap.statics = (() => {
     first: 'something first gives way'
   };
 
-  // Returns for each kind of limit the points [angle in degrees, acceleration or null], sorted by angle.
+  // Returns, for each kind of limit, the points [angle in degrees, acceleration or null], sorted by angle.
   function limitsOf(proof) {
     const found = new Map(),
           angles = [...A.list(proof.polar)].filter((p) => isKnown(p.angle_deg)).sort((a, b) => a.angle_deg - b.angle_deg);
@@ -34,7 +35,8 @@ steplap.statics = (() => {
                     .map((c) => ({...c, at: A.list(c.load).length === 2 && c.load.every(Number.isFinite) ? c.load : null }))
                     .filter((c) => c.at);
     if (!values.length) return null;
-    // Distant values would compress all others, so the range is 2.5 times the median and includes all loads.
+    // The range of the diagram is 2.5 times the median and includes all loads. Larger values are cut off, because they would compress the
+    // others.
     const sorted = [...values].sort((a, b) => a - b), middle = sorted[Math.floor(sorted.length / 2)];
     const reach = 1.05 * Math.max(Math.min(sorted[sorted.length - 1], 2.5 * middle), ...loads.map((c) => Math.hypot(...c.at))),
           step = niceStep(reach);

@@ -1,6 +1,6 @@
-// Round numbers along an axis: steps of 1, 2 or 5 times a power of ten.
+// Ticks of an axis at multiples of 1, 2 or 5 times a power of ten.
 steplap.axes = (() => {
-  // Returns { values, step }: at least three ticks from low to high; otherwise at most `most`.
+  // Returns { values, step } with at most `most` ticks from low to high, but at least three.
   function ticks(low, high, most) {
     if (!(high > low)) return { values: [low], step: Math.abs(low) || 1 };
     const from = Math.floor(Math.log10(high - low)) - 3;
@@ -15,7 +15,7 @@ steplap.axes = (() => {
     }
     return finer;
   }
-  // Uses as many decimals as the step has: 0.05 next to 0.10.
+  // Formats a tick with the decimals of the step: 0.05, 0.10.
   function label(value, step) {
     const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
     const size = Math.max(Math.abs(value), step);

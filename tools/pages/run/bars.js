@@ -1,16 +1,17 @@
-// Utilisation of each limit as bars on one scale, the highest first, with the limit as a line through all of them. Several runs have one
-// bar each under a common name; bars of the same kind at the same place are paired even if their names differ.
+// Draws the utilisation of each limit as a bar, all on one scale, the highest first, with the limit as a line. Several runs have one bar
+// each under a common name; bars of one kind at the same position are paired even if their names differ.
 steplap.bars = (() => {
   const make = steplap.make, { percent, full, isKnown } = steplap.numbers;
-  const first = 8, firstOfSeveral = 6, firstOfOthers = 3; // rows shown before the reader asks for more
-  const longest = 1.6; // of the limit; longer bars are cut off with an arrow
+  const first = 8, firstOfSeveral = 6, firstOfOthers = 3; // number of bars shown initially: for one run, for several runs, of other limits
+  const longest = 1.6; // length of a bar relative to the limit at which it is cut off with an arrow
 
   const { isJudged } = steplap.overview;
-  const isSlip = (u) => u.beyond && !isKnown(u.value) && u.share === 1; // shown in words instead of two equal numbers
-  // A utilisation without criterion has no alarm colour, however large it is.
+  // a joint that slipped; shown as a word, because value and limit are equal
+  const isSlip = (u) => u.beyond && !isKnown(u.value) && u.share === 1;
+  // Style class of a bar. Utilisations without a criterion never get an alarm colour.
   const stateOf = (u) => (!isJudged(u) ? 'plain' : u.beyond || u.share > 1 ? 'bad' : u.share >= 0.7 ? 'warn' : 'good');
-  const size = (u) => (isKnown(u.share) ? u.share : Infinity); // a limit without number: infinite load or no capacity
-  // Returns the subject of a bar without its name: kind of element, kind of limit and place in the reference pose; null if it has no
+  const size = (u) => (isKnown(u.share) ? u.share : Infinity); // sorts utilisations without a number (infinite load, or no capacity) first
+  // Returns what a bar is about, without its name: kind of element, kind of limit, and position in the reference pose; null without an
   // element.
   function subjectOf(u, run) {
     const element =
@@ -24,7 +25,7 @@ steplap.bars = (() => {
       at: steplap.geometry.apply((body && body.pose) || [0, 0, 0], place.point)
     };
   }
-  // Returns the element's own place, that of its limb, or that of the first contact that it brakes; undefined if there is none.
+  // Returns the position of the element, of its limb, or of the first contact on which its friction acts; undefined if there is none.
   function placeOf(element, run) {
     if (element.at && element.at.length) return element.at[0];
     if (element.limb) return { body: element.limb, point: [0, 0] };
@@ -35,7 +36,7 @@ steplap.bars = (() => {
     const box = run.drawing.bodies.reduce((b, body) => b.take((body.pose || [0, 0]).slice(0, 2)), new steplap.Box());
     return Math.max(...box.span);
   };
-  // Pairs rows that exist in some runs only by place, if the match is unique.
+  // Pairs rows that exist in some runs only with rows at the same position in the others, if the match is unique.
   function pairByPlace(rows, runs) {
     const near = 0.01 * Math.max(...runs.map(sizeOf)),
           subjects = rows.map((row) => row.entries.map((u, k) => (u ? subjectOf(u, runs[k]) : null)));
@@ -55,18 +56,19 @@ steplap.bars = (() => {
     });
     return rows.filter((_, i) => !gone.has(i));
   }
-  // Heading over the bars: the name, both names if runs differ, and the runs without such a bar.
+  // Returns the heading of a row: its name, both names if runs differ, and the runs without this bar.
   function headOf(row, runs) {
     const names = [...new Set(row.entries.filter(Boolean).map((u) => u.name))], without = runs.filter((_, k) => !row.entries[k]);
     const alone = without.length ? make('span', { class: 'alone-note' }, ` not in ${without.map((r) => r.name).join(', ')}`) : '';
     return make('h4', {}, names.join(' / '), alone);
   }
-  // A criterion of many elements is reported for the worst one, which may differ between runs: "joint margin (back joint)".
+  // Returns the name under which bars of several runs are matched. A criterion for many elements names the worst one in brackets, which may
+  // differ between runs: "joint margin (back joint)".
   function keyOf(u) {
     const element = (u.channel || '').replace(/\.[^.]*$/, '');
     return element && u.name.endsWith(` (${element})`) ? u.name.slice(0, -element.length - 3) : u.name;
   }
-  // Returns rows { name, entries: [one per run, or undefined] }, the worst first.
+  // Returns rows { name, entries }, the worst first. `entries` has one utilisation per run, or undefined.
   function rowsOf(runs) {
     const rows = new Map();
     runs.forEach((run, k) => {
@@ -79,12 +81,12 @@ steplap.bars = (() => {
     const worst = (row) => Math.max(...row.entries.filter(Boolean).map(size));
     return pairByPlace([...rows.values()], runs).sort((a, b) => worst(b) - worst(a));
   }
-  // "124 of 156 kN", or "1.1, asked 1.2" if more is better; empty if the percentage is sufficient.
+  // Returns value and limit: "124 of 156 kN", or "1.1, asked 1.2" if larger is better; '' if the percentage suffices.
   function ofLimit(u) {
-    if (isSlip(u) || u.limit === 0) return u.detail || ''; // a limit of zero has no percentage
+    if (isSlip(u) || u.limit === 0) return u.detail || ''; // for a limit of zero there is no percentage
     if (!isKnown(u.value) || !isKnown(u.limit) || (!u.unit && u.limit === 1)) return '';
     if (!u.unit && (u.channel || '').endsWith('share')) return `${percent(u.value)} of ${percent(u.limit)}`;
-    if (!u.unit && u.detail) return u.detail; // the detail names the number
+    if (!u.unit && u.detail) return u.detail; // `detail` describes the number
     const { texts, unit } = steplap.numbers.column([{ value: u.value }, { value: u.limit }], u.unit || '');
     const isLeast = Math.abs(u.value) > 0 && Math.abs(u.share - u.limit / u.value) < 1e-6 * Math.abs(u.share) && u.value !== u.limit;
     if (isLeast) return `${steplap.numbers.withUnit(texts[0], unit)}, asked ${steplap.numbers.withUnit(texts[1], unit)}`;
@@ -109,7 +111,7 @@ steplap.bars = (() => {
     button.addEventListener('click', () => onChoose(u, run));
     return button;
   }
-  // `onChoose(utilisation, run)` is called when a reader selects a bar, to show its curve and instant.
+  // Builds the bars. Calls `onChoose(utilisation, run)` when the reader selects one.
   function build(box, runs, onChoose) {
     const rows = rowsOf(runs), isOne = runs.length === 1, seen = isOne ? first : firstOfSeveral;
     box.hidden = !rows.length;

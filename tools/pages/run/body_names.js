@@ -1,11 +1,11 @@
-// Names of bodies in the picture. A name lies on its body if there is room, otherwise next to it with a leader line, but never on another
-// body or name. Names without room are omitted, and the picture shows how many (legend.js).
+// Places the names of bodies in the picture: on the body if there is room, otherwise next to it with a leader line, but never on another
+// body or name. Names without room are omitted, and the legend shows their number (legend.js).
 (() => {
   const make = steplap.make, { add, minus, scaled, dot, length, seenIn, apply } = steplap.geometry;
-  const font = '12px "DejaVu Sans", Arial, sans-serif', lineHeight = 14, air = 3; // pixels
-  const rings = [6, 18, 34, 54, 80, 110, 150, 200, 260]; // pixels between a name and the box around its body
-  const most = 40, mostCrowded = 16; // bodies with names; bodies whose names may be far from them
-  const onBody = 6, beside = 12; // candidate places stored per name, in case bodies pass each other
+  const font = '12px "DejaVu Sans", Arial, sans-serif', lineHeight = 14, air = 3; // font; line height and margin, pixels
+  const rings = [6, 18, 34, 54, 80, 110, 150, 200, 260]; // distances tried between a name and the box around its body, pixels
+  const most = 40, mostCrowded = 16; // largest number of bodies with names; largest number with names far from the body
+  const onBody = 6, beside = 12; // number of stored positions per name, on the body and next to it, for use when bodies pass each other
   const canvas = document.createElement('canvas').getContext('2d');
 
   const grid = (low, high, count) => Array.from({ length: count }, (_, k) => low + ((high - low) * (k + 0.5)) / count);
@@ -14,7 +14,7 @@
   const isIn = ([x, y], box, gap) => x > box[0] - gap && x < box[2] + gap && y > box[1] - gap && y < box[3] + gap;
   const nearestIn = (box, [x, y]) => [Math.min(Math.max(x, box[0]), box[2]), Math.min(Math.max(y, box[1]), box[3])];
 
-  // Layouts of a name: one line, and two lines if it has several words.
+  // Returns the possible layouts of a name: one line and, if it has several words, two lines.
   function layoutsOf(name) {
     const words = name.split(' '), all = [[name]];
     if (words.length > 1) {
@@ -34,7 +34,7 @@
       this.nameLayer.append(element);
       this.marks.set(body.name, { layouts: layoutsOf(body.name), places: [], spot: null, element, leader, text, written: null });
     },
-    // Returns the present box of the name in pixels; null if it is omitted.
+    // Returns the box of a name in pixels; null if the name is omitted.
     nameBox(name, pose) {
       const { spot } = this.marks.get(name);
       return spot ? boxAt(add(this.toScreen(pose(name)), spot.shift), spot.layout) : null;
@@ -60,14 +60,14 @@
       const written = layout.lines.map((line, k) => make('tspan', { x: 0, y: lineHeight * (k + 0.8) }, (k ? ' ' : '') + line));
       mark.text.replaceChildren(...written);
     },
-    // Returns the point of the body nearest to a name, on the screen.
+    // Returns the end of the leader line: the point of the body nearest to the name, in pixels.
     leaderEnd(body, box, pose) {
       const middle = [0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])], p = pose(body.name);
       return this.toScreen(apply(p, steplap.forms.nearest(body, seenIn(p, this.toPlane(...middle))) || [0, 0]));
     },
 
-    // --- what is where --------------------------------------------------------------------------------
-    // Returns the lines of a body (bars, an outline of two points, struts) as [from, to, half of the width in pixels].
+    // --- geometry of bodies and names -----------------------------------------------------------------
+    // Returns the lines of a body (bars, an outline of two points, struts) as [from, to, half the line width in pixels].
     linesOf(body) {
       if (!body.lines)
         body.lines = [
@@ -86,8 +86,7 @@
       const edge = steplap.forms.nearest(body, p);
       return Boolean(edge) && length(minus(p, edge)) < 4 / this.scale;
     },
-    // Returns the names of bodies at a point in the order of drawing. Of the body `exact` only painted areas count, of others also a
-    // margin.
+    // Returns the names of bodies at a point, in the order of drawing. The body `exact` is tested without a margin, all others with one.
     bodiesAt(point, pose, exact) {
       const found = [];
       for (const body of this.bodies.values()) {
@@ -98,11 +97,12 @@
       }
       return found;
     },
-    // Ranks a place: 0 on its body alone; 1 on no body; 2 on its own body, which lies above others; 3 on another body.
+    // Returns the rank of a position for a name: 0 on its body only; 1 on no body; 2 on its body, which is drawn above others; 3 on another
+    // body.
     rankOf(name, screen, pose) {
       const at = this.bodiesAt(this.toPlane(...screen), pose, name), own = at.indexOf(name);
       if (!at.length) return 1;
-      // A body around another one is translucent and hides nothing inside it, in whichever order they are drawn.
+      // A body that encloses the name's body is translucent and hides nothing.
       const isWithin = (inner, outer) => this.isBehind(outer) && this.body(inner).reach < this.body(outer).reach;
       const isHidden = at.some((other, i) => other !== name && (i > own ? !isWithin(name, other) : isWithin(other, name)));
       return own < 0 || isHidden ? 3 : at.length > 1 ? 2 : 0;
@@ -111,7 +111,7 @@
       if (!this.behind) this.behind = new Set([...this.bodies.values()].filter((body) => this.isAround(body)).map((body) => body.name));
       return this.behind.has(name);
     },
-    // Returns true if the whole box is on the visible body or, if `isBeside`, on no body.
+    // Returns true if the whole box is on the visible part of the name's body or, if `isBeside`, on no body.
     isNameClear(name, box, isBeside, pose) {
       if (box[0] < 2 || box[1] < 2 || box[2] > this.width - 2 || box[3] > this.height - this.footHeight() - 4) return false;
       if (this.lensBoxes().some((lens) => overlap(box, lens, 2))) return false;
@@ -121,14 +121,14 @@
       }));
     },
 
-    // --- where names stand ----------------------------------------------------------------------------
+    // --- positions of names ---------------------------------------------------------------------------
     boxOnScreen(body, pose) {
       const box = new steplap.Box();
       body.extend(box, pose(body.name));
       const [left, bottom] = this.toScreen(box.low), [right, top] = this.toScreen(box.high);
       return [left, top, right, bottom];
     },
-    // Returns candidate centres for a name on its body, nearest to the body's centre first.
+    // Returns candidate centres of a name on its body, nearest to the body's centre first.
     placesOn(around, { width, height }) {
       const [left, top, right, bottom] = around, middle = [0.5 * (left + right), 0.5 * (top + bottom)];
       if (right - left < width || bottom - top < height) return [];
@@ -136,7 +136,7 @@
       const found = columns.flatMap((x) => rows.map((y) => [x, y]));
       return found.sort((a, b) => length(minus(a, middle)) - length(minus(b, middle)));
     },
-    // Returns candidate centres for a name around a box, nearest first.
+    // Returns candidate centres of a name outside a box, nearest first.
     placesBeside(around, { width, height }) {
       const [left, top, right, bottom] = around, found = [];
       for (const gap of this.bodies.size > mostCrowded ? rings.slice(0, 4) : rings) {
@@ -150,7 +150,7 @@
       }
       return found;
     },
-    // Chooses the place of each name in the reference pose; small bodies choose first.
+    // Chooses the position of each name in the reference pose, starting with the smallest body.
     spreadNames() {
       const rest = (name) => this.reference(name), taken = [], symbols = this.symbols.occupied();
       for (const [name, mark] of [...this.marks].sort((a, b) => this.body(a[0]).reach - this.body(b[0]).reach)) {
@@ -178,7 +178,7 @@
       const end = this.leaderEnd(body, box, pose), from = nearestIn(box, end);
       return grid(0, 1, 16).every((s) => taken.every((other) => !isIn(add(from, scaled(minus(end, from), s)), other, 1)));
     },
-    // Moves a name aside while it would lie on another name or body, because bodies pass each other.
+    // Moves names that would overlap another name or body at this pose.
     settleNames(pose) {
       const settled = [];
       for (const [name, mark] of this.marks) {

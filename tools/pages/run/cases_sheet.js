@@ -1,10 +1,10 @@
-// The sheet of load cases: drawing, cases with their sources, the matrix of limits by cases, values of each case.
+// The sheet of load cases: drawing, cases with sources, utilisation of each limit in each case, values of each case.
 steplap.casesSheet = (found) => {
   const make = steplap.make, { quantity } = steplap.data, { table } = steplap.tables, { percent } = steplap.numbers;
-  const { part, named, drawing, smaller } = steplap.sheet, { model, cases } = found, usual = 8.5; // pt
+  const { part, named, drawing, smaller } = steplap.sheet, { model, cases } = found, usual = 8.5; // usual font size, pt
 
   const limitOf = (one, name) => one.limits.findIndex((l) => l.limit === name);
-  // Shows the outcome of a limit that has no utilisation, such as an event.
+  // Returns the utilisation of a limit, or its outcome if it has none, such as an event.
   function used(one, name) {
     const limit = one.limits[limitOf(one, name)];
     if (!limit) return '–';

@@ -1,17 +1,17 @@
-// The loads of a run: what acts, on what, how strongly and when, each as a curve with a sentence. Drives are sized by the motion of the
-// driven point, motors and forces by their channels; without any of them the speeds at the start and gravity are what acts.
+// Finds the loads of a run: kind, body, size and time of action, each with a curve and a sentence. The size of a drive is the motion of the
+// driven point; that of motors and forces is a channel. Without loads, initial velocities and gravity are reported.
 (() => {
   const { add, minus, scaled, dot, length, turn, apply } = steplap.geometry;
   const g = 9.80665; // m/s²
-  const acting = 0.02; // of the largest size: less is none
-  const whole = 0.02; // of the run: a load that begins sooner and ends later than this acts in all of it
-  const even = 0.1; // of a period: by how much the periods of a vibration may differ
-  const least = 1e-9; // of a load in SI units: rounding
+  const acting = 0.02; // smallest size, relative to the largest, at which a load counts as acting
+  const whole = 0.02; // a load acts during the whole run if it begins and ends within this fraction of the run from its ends
+  const even = 0.1; // largest relative difference between the periods of a vibration
+  const least = 1e-9; // smaller loads, in SI units, are rounding errors
 
   const plain = (v) => steplap.data.plain(v, 3);
   const inUnit = (unit) => (v) => steplap.data.quantity(v, unit, 3);
   const degrees = (v) => `${plain((v * 180) / Math.PI)}°`;
-  // By what a drive prescribes and which way: the text of a size, and the verbs of one that leads forward, backward, and to and fro.
+  // Texts of drives by the prescribed quantity and direction: text of the size, and verbs for motion forward, backward and both ways.
   const drives = {
     acceleration: {
       text: (a) => `${plain(a / g)}\u00a0g`,
@@ -29,8 +29,9 @@
   };
   const turned = (w, r) => [-w * r[1], w * r[0]]; // w × r
 
-  // --- motion of a driven point against its base ---------------------------------------------------------
-  // Position, velocity and acceleration of a body's point, and the body's angle with its rates; null if a channel is not recorded.
+  // --- motion of a driven point relative to its base -----------------------------------------------------
+  // Returns position, velocity and acceleration of a point of a body, and the body's angle with its derivatives; null if a channel is
+  // missing.
   function motionOf(scene, place) {
     const names = ['x', 'y', 'theta', 'vx', 'vy', 'omega', 'ax', 'ay', 'alpha'];
     if (scene.isHeld(place.body))
@@ -43,16 +44,16 @@
       return { at: add([x, y], r), v: add([vx, vy], turned(w, r)), a, angle: [angle, w, alpha] };
     };
   }
-  // Motion of the driven point in the axes of the base: relative velocity and acceleration in a rotating frame.
+  // Returns relative velocity and acceleration of the driven point in the rotating axes of the base.
   function relativeTo(base, point) {
     const [, w, alpha] = base.angle, r = minus(point.at, base.at), v = minus(minus(point.v, base.v), turned(w, r));
     const frame = add(turned(alpha, r), scaled(r, -w * w)), a = minus(minus(minus(point.a, base.a), frame), scaled(turned(w, v), 2));
     return [r, v, a];
   }
   const rates = ['position', 'velocity', 'acceleration'];
-  // Channels have single precision: a difference of two that is smaller than this part of them is rounding.
+  // Returns 0 for differences that are rounding errors, because channels have single precision.
   const known = (value, ...of) => (Math.abs(value) < 1e-6 * Math.max(...of.map(Math.abs)) ? 0 : value);
-  // Returns the motion that a drive prescribes as a function of time; null if the results do not contain it.
+  // Returns the prescribed motion of a drive as a function of time; null if the results lack it.
   function driveOf(scene, element, shape) {
     const [driven, base] = shape.at, ends = base ? [motionOf(scene, driven), motionOf(scene, base)] : [null],
                    rate = rates.indexOf(element.as);
@@ -70,7 +71,7 @@
     }[shape.type];
     const value = (t) => at(ends.map((end) => end(t))), start = rate === 0 ? value(0) : 0, size = length(ends[0](0).at);
     const reaction = scene.run.channel(`${element.name}.reaction`),
-          isReleased = (t) => Boolean(reaction) && reaction.at(t) === 0; // by an action
+          isReleased = (t) => Boolean(reaction) && reaction.at(t) === 0; // released by an action
     const isUp = shape.type === 'arrow' && Math.abs(dot(shape.direction, scene.run.drawing.gravity || [0, -g])) > 0.7 * g,
           { text, along, up } = (shape.type === 'arc' ? turns : drives)[element.as];
     return { at: (t) => (isReleased(t) ? 0 : known(value(t) - start, rate === 0 ? size : 0)), text, verbs: isUp ? up : along };
@@ -87,23 +88,24 @@
                                   : { at: (t) => channel.at(t), text, does };
   }
 
-  const driving = { arrow: ['motor', 'load'], arc: ['motor', 'couple'], spring: [] }; // other arrows without `as` transmit forces
+  // styles of shapes that are loads; others are loads only if the element has the field `as`
+  const driving = { arrow: ['motor', 'load'], arc: ['motor', 'couple'], spring: [] };
   const isDriving = (element, { type, style }) => type in driving && (Boolean(element.as) || driving[type].includes(style));
 
-  // --- where and when --------------------------------------------------------------------------------------------
-  // All instants that are recorded; thinned channels have their own.
+  // --- times of action --------------------------------------------------------------------------------------------
+  // Returns all recorded times; thinned channels have fewer.
   function instantsOf(run) {
     const longest = (a, c) => (c.times.length > a.length ? c.times : a);
     return Array.from(run.times.length > 2 ? run.times : [...run.channels.values()].reduce(longest, run.times));
   }
-  // Hz, of a curve that passes its middle at even intervals for two periods or more; 0 for others.
+  // Returns the frequency, Hz, of a curve that crosses its mean at regular intervals for at least two periods; otherwise 0.
   function frequencyOf(times, values) {
     const high = values.reduce((a, b) => Math.max(a, b)), low = values.reduce((a, b) => Math.min(a, b)), middle = 0.5 * (high + low);
     const ups = times.filter((_, i) => i > 0 && values[i - 1] < middle && values[i] >= middle);
     const periods = ups.slice(1).map((t, i) => t - ups[i]), mean = periods.reduce((a, b) => a + b, 0) / (periods.length || 1);
     return periods.length > 1 && periods.every((p) => Math.abs(p - mean) < even * mean) ? 1 / mean : 0;
   }
-  // Adds size and time to what acts; null if it never acts.
+  // Adds size and times of action to a load; returns null if it never acts.
   function measured(scene, load) {
     const times = instantsOf(scene.run), values = times.map(load.at), sizes = values.map(Math.abs),
           peak = sizes.reduce((a, b) => Math.max(a, b), 0);
@@ -133,7 +135,7 @@
                   : '';
     return rhythm + (isWhole ? '' : ` from ${text(from)} to ${text(to)}`);
   }
-  // A drive against the motion brakes.
+  // Returns the verb for a load. A drive against the motion brakes.
   function verbOf(scene, { element, shape, verbs, from, isBackward, isBothWays }) {
     const vx = scene.run.channel(`${shape.at[0].body}.vx`), before = vx && shape.direction ? vx.at(from) * shape.direction[0] : 0;
     if (!isBothWays && element.as === 'acceleration' && shape.type === 'arrow' && before * (isBackward ? -1 : 1) < 0)
@@ -150,12 +152,12 @@
     return capital(`${words} ${size}.`);
   }
 
-  // --- without a load: the speeds at the start, and gravity ----------------------------------------------------------
+  // --- without loads: initial velocities and gravity ---------------------------------------------------------------
   const startOf = (scene, body) => ['vx', 'vy', 'omega'].map((name) => {
     const c = scene.run.channel(`${body.name}.${name}`);
     return c ? c.at(0) : 0;
   });
-  // Bodies that begin with the same velocity, or turn at one point: [{ names, velocity, spin }].
+  // Returns groups of bodies with the same initial velocity, or rotation about the same point: [{ names, velocity, spin }].
   function startsOf(scene) {
     const groups = [];
     for (const body of [...scene.bodies.values()].filter((b) => b.channels)) {
@@ -196,7 +198,7 @@
   }
 
   Object.assign(steplap.Scene.prototype, {
-    // Returns the loads of this run in the order of the model: [{ element, shape, at(t), peak, from, to, times, values, text(size),
+    // Returns the loads of this run in the order of the model, as [{ element, shape, at(t), peak, from, to, times, values, text(size),
     // sentence }].
     causes() {
       if (this.foundCauses) return this.foundCauses;
@@ -206,7 +208,7 @@
                                       : [startLoads, gravityLoad].map((make) => make(this)).find((loads) => loads.length) || [];
       return this.foundCauses;
     },
-    // The load that a shape of an element shows: null if it never acts, undefined if the results do not have its size.
+    // Returns the load shown by a shape of an element; null if it never acts, undefined if its size is not in the results.
     loadOf(element, shape) {
       if (!this.foundLoads) this.foundLoads = new Map();
       if (!this.foundLoads.has(shape))

@@ -8,8 +8,8 @@ steplap.data = (() => {
   const floats = (text) => new Float32Array(bytesOf(text).buffer);
   const doubles = (text) => new Float64Array(bytesOf(text).buffer);
 
-  // A time history. Values are stored as differences from `zero`, so that single precision resolves a millimetre within metres of travel.
-  // Numbers are parsed on first use, because the first picture needs few channels.
+  // A time history. Values are stored as differences from `zero`, so that single precision resolves 1 mm in a travel of many metres.
+  // Numbers are parsed at first use, because the first picture needs few channels.
   class Channel {
     constructor(raw, times) {
       this.name = raw.name;
@@ -21,10 +21,10 @@ steplap.data = (() => {
     get rest() { return this.held || (this.held = floats(this.raw.values)); }
     get times() { return this.ownTimes || (this.ownTimes = this.raw.times ? floats(this.raw.times) : this.commonTimes); }
     get length() { return this.rest.length; }
-    // Differences are accurate to about 1e-7 of the first value; smaller ones count as zero.
+    // Returns 0 for differences below the rounding error of single precision, about 1e-7 of the first value.
     known(value) { return Math.abs(value) < 2e-7 * Math.abs(this.zero) ? 0 : value; }
     value(i) { return this.known(this.zero + this.rest[i]); }
-    // Linear between samples, constant before the first and after the last.
+    // Interpolates linearly between samples; constant outside.
     at(t) { return this.known(this.zero + this.restAt(t)); }
     restAt(t) {
       const n = this.rest.length;
@@ -37,7 +37,7 @@ steplap.data = (() => {
     }
   }
 
-  // Last i with times[i] <= t, or -1.
+  // Returns the largest i with times[i] <= t; -1 if there is none.
   function indexBefore(times, t) {
     let low = 0, high = times.length;
     while (low < high) {
@@ -54,7 +54,7 @@ steplap.data = (() => {
       this.times = raw.times ? doubles(raw.times) : new Float64Array([0, 1]);
       this.channels = new Map(raw.channels.map((c) => [c.name, new Channel(c, this.times)]));
     }
-    // Returns the mode of a friction element: that of the sample before t, changed by events since then.
+    // Returns the mode of a friction element at t: that of the previous sample, updated by events since then.
     modeAt(element, t) {
       const mode = this.channel(`${element}.mode`);
       if (!mode) return NaN;
@@ -123,7 +123,7 @@ steplap.data = (() => {
     return text.replace('-', '−');
   }
 
-  // Returns one interface per corner of the step-lap joints, because a core has many equal ones.
+  // Returns one interface per corner of the step-lap joints; a core has many equal ones per corner.
   function corners(run) {
     const cores = run.drawing.cores || [],
           cornerOf = (s) =>
@@ -134,11 +134,11 @@ steplap.data = (() => {
     return [...found.values()];
   }
 
-  // Merges lists of several runs: each name once, in the order of first appearance.
+  // Returns all names of several lists, each once, in order of first appearance.
   const unique = (lists) => [...new Set(lists.flat())];
 
   const raw = JSON.parse(document.getElementById('data').textContent);
-  // A run that consists of a drawing only, shown in the given pose.
+  // Returns a run that has only a drawing, in a fixed pose.
   const still = (name, drawing) => new Run({ name, drawing, summary: { extremes: {} }, events: [], channels: [], poseOf: () => null });
   const runs = raw.runs.map((r) => new Run(r));
   return {

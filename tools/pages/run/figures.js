@@ -1,12 +1,12 @@
-// Chooses the curves to show: first those that criteria limit and no figure of the model contains, then the model's figures. A model
-// without figures gets one per kind of channel. Channels that are only rounding are omitted.
+// Chooses the curves to show: channels limited by criteria that no figure of the model contains, then the model's figures. A model without
+// figures gets one figure per kind of channel. Channels with rounding errors only are omitted.
 steplap.figures = (() => {
   const { isRounding } = steplap.numbers, q = steplap.quantities;
   const most = 8, mostAsked = 4, mostCurves = 7;
   const unitOf = (run, name) => run.channel(name).unit;
   const endingOf = (name) => name.slice(name.lastIndexOf('.') + 1);
 
-  // Returns true if a channel is constant up to rounding; it is then shown only if a criterion names it.
+  // Returns true if a channel is constant up to rounding errors. It is then shown only if a criterion limits it.
   function isFlat(run, name) {
     const e = run.summary.extremes[name];
     if (!e || e.min === null || e.max === null) return false;
@@ -32,7 +32,7 @@ steplap.figures = (() => {
     gap: 'Gaps',
     slid_share: 'Slid shares of the overlaps'
   };
-  // Titles distinguish forces by the element that transmits them.
+  // Returns a title; for forces it includes the kind of the element.
   function titleOf(run, name) {
     const ending = endingOf(name), element = run.drawing.elements.find((e) => `${e.name}.${ending}` === name);
     if (!element || !['force', 'couple', 'reaction'].includes(ending)) return titles[ending] || ending.replace(/_/g, ' ');
@@ -59,7 +59,7 @@ steplap.figures = (() => {
     const endings = ['slide', 'friction', 'force', 'couple', 'tension', 'reaction', 'margin', 'p_req', 'theta', 'x', 'y'], names = [];
     for (const ending of endings) {
       const found = steplap.data.unique(runs.map((r) => r.matching([`*.${ending}`]))).filter((name) => !isFlatIn(runs, name));
-      // Channels with the largest range come first, since there may be more than a figure can show.
+      // Channels with a large range come first, because a figure shows only some of them.
       const reach = (name) => Math.max(...runs.map((r) => {
         const e = r.summary.extremes[name];
         return e ? e.max - e.min || 0 : 0;
@@ -72,7 +72,7 @@ steplap.figures = (() => {
     const names = steplap.data.unique(runs.map((run) => [...q.limitsOf(run).keys()]));
     return grouped(runs, names.filter((name) => !shown.has(name) && !isFlatIn(runs, name)), mostAsked);
   }
-  // Returns one figure per plot of the models, otherwise one per informative kind of channel.
+  // Returns one figure per plot of the models; without plots, one per kind of channel that varies.
   function of (runs) {
     const own = new Map();
     for (const run of runs)

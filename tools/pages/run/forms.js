@@ -1,10 +1,10 @@
-// Geometry of bodies for other drawings: edges, the point where a line leaves a body, the point where it meets another one.
+// Geometry of bodies: edges, intersections with a line, nearest point.
 steplap.forms = (() => {
   const { add, minus, scaled, dot, length, apply } = steplap.geometry;
   const cross = (a, b) => a[0] * b[1] - a[1] * b[0];
-  const sides = 24; // of a circle
+  const sides = 24; // number of sides of a polygon that replaces a circle
 
-  // Returns the edges in the body's axes as pairs of points.
+  // Returns the edges of a body in its axes, as pairs of points.
   function edgesOf(body) {
     if (body.edges) return body.edges;
     const edges = [], ring = (points) => points.forEach((p, i) => edges.push([p, points[(i + 1) % points.length]]));
@@ -18,7 +18,7 @@ steplap.forms = (() => {
     body.edges = edges;
     return edges;
   }
-  // Returns the distances from p along the unit vector d at which a line crosses the body in a pose, in ascending order.
+  // Returns the distances from p, in ascending order, at which the line along the unit vector d crosses the body's outline.
   function crossings(body, pose, p, d) {
     const found = [];
     for (const edge of edgesOf(body)) {
@@ -29,7 +29,7 @@ steplap.forms = (() => {
     }
     return found.sort((x, y) => x - y);
   }
-  // Returns the point on the body's edges nearest to p, in its axes; null for a body without edges.
+  // Returns the point on the body's outline nearest to p, in the body's axes; null for a body without outline.
   function nearest(body, p) {
     let best = null;
     for (const [a, b] of edgesOf(body)) {
@@ -46,7 +46,7 @@ steplap.forms = (() => {
     });
     return is;
   }
-  // Returns true for points inside the outline, including holes.
+  // Returns true if p is within the outline, including holes.
   function isInside(body, p) {
     const within = (ring) => isWithin(ring, p);
     return (body.outline.length > 2 && within(body.outline)) || body.polygons.some(within) ||

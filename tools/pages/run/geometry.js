@@ -1,4 +1,4 @@
-// Points and poses: [x, y] and [x, y, angle].
+// Operations on points [x, y] and poses [x, y, angle].
 steplap.geometry = (() => {
   const turn = (p, angle) => {
     const c = Math.cos(angle), s = Math.sin(angle);
@@ -14,8 +14,8 @@ steplap.geometry = (() => {
   const seenIn = (pose, p) => turn(minus(p, [pose[0], pose[1]]), -pose[2]);
   // Returns the pose of b relative to a.
   const relative = (a, b) => [...turn([b[0] - a[0], b[1] - a[1]], -a[2]), b[2] - a[2]];
-  // Returns the lowest of `corners` above the line through `origin` with the normal n, projected onto the line; the middle if several are
-  // equal. `ends` limits the line along [n_y, -n_x].
+  // Returns the point of `corners` with the smallest height above the line through `origin` with normal n, projected onto the line; the
+  // middle one of several at equal height. `ends` limits the line along [n_y, -n_x].
   const lowest = (n, origin, corners, ends = [-Infinity, Infinity]) => {
     if (!corners.length) return null;
     const along = [n[1], -n[0]], height = (p) => dot(n, minus(p, origin));
@@ -25,7 +25,7 @@ steplap.geometry = (() => {
     const low = Math.max(Math.min(...touching), ends[0]), high = Math.min(Math.max(...touching), ends[1]);
     return { gap: height(first), n, at: add(scaled(n, dot(n, origin)), scaled(along, 0.5 * (low + high))) };
   };
-  // Returns the contact point of two touching convex outlines, and the direction in which the second one presses the first.
+  // Returns the contact point of two touching convex outlines, and the direction of the force of the second on the first.
   const facing = (first, second) => {
     let best = null;
     for (const [own, other, sign] of [[second, first, 1], [first, second, -1]]) {
@@ -69,7 +69,8 @@ steplap.Box = class Box {
   }
 };
 
-// Returns the ends of an edge on which wheels roll, in order. `sizes` are radius, x, y, x, y, thickness, and further x, y of a road.
+// Returns the ends of an edge on which wheels roll, in order. `sizes` contains radius, x, y, x, y, thickness, and x, y of further points of
+// a road.
 steplap.endsOfEdge = (sizes) => {
   const numbers = [...sizes.slice(1, 5), ...sizes.slice(6)], ends = [];
   for (let i = 0; i + 1 < numbers.length; i += 2) ends.push([numbers[i], numbers[i + 1]]);

@@ -1,8 +1,8 @@
-// Draws the start pose of displaced bodies, dashed, at its place on the body that carries them.
+// Draws the initial poses of displaced bodies with dashed lines, relative to the body that carries them.
 (() => {
   const make = steplap.make, { minus, length, apply } = steplap.geometry;
-  const least = 3; // pixels; smallest displacement that gets a ghost
-  const most = 40; // bodies
+  const least = 3; // smallest displacement, pixels, for which the initial pose is drawn
+  const most = 40; // largest number of bodies with a drawn initial pose
 
   Object.assign(steplap.Scene.prototype, {
     addGhost(body) {
@@ -16,12 +16,12 @@
         if (isSeen) this.putAt(group, this.ghostPose(body.name, pose));
       });
     },
-    // Returns the distance at which a body is drawn from its ghost, m.
+    // Returns the displacement of a body as drawn, m.
     shiftOf(body, pose) {
       const at = this.ghostPose(body.name, pose), now = pose(body.name);
       return Math.max(0, ...body.points.map((p) => length(minus(apply(at, p), apply(now, p)))));
     },
-    // Moves a drawing in body axes to the body's pose.
+    // Moves a drawing from body axes to the given pose.
     putAt(group, [x, y, angle]) {
       const c = this.scale * Math.cos(angle), s = this.scale * Math.sin(angle), [sx, sy] = this.toScreen([x, y]);
       group.setAttribute('transform', `matrix(${c} ${- s} ${- s} ${- c} ${sx} ${sy})`);

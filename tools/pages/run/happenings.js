@@ -1,10 +1,10 @@
-// Marks elements that lifted, broke, came apart or slipped from that instant on, with the sign of the timeline and in words. If there are
-// many, only breaks and separations get a sign; the others are only coloured (symbols.js), because signs would hide the machine. Sliding
-// friction has its own words (symbols.js).
+// Marks elements that have lifted, broken, come apart or slipped, from that instant on, with a sign and a word. If there are many, only
+// breaks and separations get a sign, because signs would hide the machine; the others are only coloured (symbols.js). Sliding friction has
+// its own texts (symbols.js).
 (() => {
   const make = steplap.make, { add, scaled } = steplap.geometry;
-  const most = 30, mostInWords = 5; // elements
-  const size = 16; // pixels of a sign
+  const most = 30, mostInWords = 5; // largest number of elements with signs; with words
+  const size = 16; // size of a sign, pixels
   const grave = ['break', 'apart', 'open', 'slip'];
   const past = {
     lifts: 'lifted',
@@ -15,11 +15,12 @@
     tips: 'tips',
     'loses an interface': 'lost an interface'
   };
-  const onFirst = new Set(['contact', 'faces', 'touch', 'edge_touch']); // kinds whose first place belongs to the part that lifts
+  // kinds of elements whose first point belongs to the part that lifts
+  const onFirst = new Set(['contact', 'faces', 'touch', 'edge_touch']);
 
   Object.assign(steplap.Scene.prototype, {
-    // Names of elements that slipped, opened or broke, and of bodies that tipped; they are coloured from that instant on. `story` of the
-    // summary contains the word for each.
+    // Sets the names of elements that slipped, opened or broke, and of bodies that tipped, which are coloured from that instant on. `story`
+    // of the summary contains the word for each.
     setMoved(names, story = []) {
       this.moved = new Set(names || []);
       for (const { group } of this.happenings || []) group.remove();
@@ -32,13 +33,14 @@
       this.happenings =
         (isFew ? found : found.filter(isGrave)).slice(0, most).map((h) => ({...h, isInWords: isFew, ...this.happeningMark(h.name) }));
     },
-    // Returns the first place or the middle of the places of an element, or the centre of gravity of a body that tips.
+    // Returns the position of the sign: the element's first point or the middle of its points, or the centre of gravity of a body that
+    // tips.
     happeningPlace(name) {
       const element = this.byName.get(name), shapes = element ? this.elements.find((e) => e.name === name)?.shapes || [] : [];
       if (!element) return this.bodies.has(name) ? (pose) => pose(name).slice(0, 2) : null;
       if (shapes.some((shape) => shape.type === 'friction') &&
         !this.run.events.some((e) => e[1] === name && ['break', 'apart', 'open'].includes(e[4])))
-        return null; // sliding friction has its own words
+        return null; // sliding friction has its own texts
       const at = (shapes[0] && shapes[0].at.length ? shapes[0].at : element.at || []),
             places = shapes[0] && onFirst.has(shapes[0].type) ? at.slice(0, 1) : at;
       return places.length ? (pose) => scaled(places.map((p) => this.placed(p, pose)).reduce(add), 1 / places.length) : null;
@@ -50,7 +52,7 @@
       this.textLayer.append(group);
       return { group, text, sign: null };
     },
-    // Returns the most serious event of an element up to t, and whether it still lasts at t; null before the first one.
+    // Returns the most serious event of an element up to time t, and whether its effect lasts at t; null before the first event.
     happenedTo({ name, told }, t) {
       if (this.bodies.has(name) && !this.byName.has(name)) return told && t >= told.from ? { role: 'tip', word: 'tips' } : null;
       const own = this.run.events.filter((e) => e[1] === name && e[0] <= t), role = grave.find((r) => own.some((e) => e[4] === r));

@@ -1,4 +1,4 @@
-// Draws the sheets of a step-lap joint where they overlap, strongly magnified across the joint line.
+// Draws the overlapping sheets of a step-lap joint, strongly magnified across the joint line.
 steplap.Inset = (() => {
   const make = steplap.make, { minus, length, unit, apply, relative } = steplap.geometry;
   const width = 246, height = 112;
@@ -12,7 +12,8 @@ steplap.Inset = (() => {
     const q = ring[(i + 1) % ring.length], r = ring[(i + 2) % ring.length];
     return (q[0] - p[0]) * (r[1] - q[1]) - (q[1] - p[1]) * (r[0] - q[0]) >= -1e-12;
   });
-  // Clips a ring by the convex counter-clockwise polygon `knife` (I. E. Sutherland, G. W. Hodgman, Commun. ACM 17 (1974) 32).
+  // Returns the part of a ring inside the convex counter-clockwise polygon `knife` (I. E. Sutherland, G. W. Hodgman, Commun. ACM 17 (1974)
+  // 32).
   function clipped(ring, knife) {
     let rest = ring;
     for (let i = 0; i < knife.length && rest.length; ++i) {
@@ -30,14 +31,14 @@ steplap.Inset = (() => {
   }
 
   let insets = 0; // ids of clip paths are unique in the page
-  const evenodd = { 'fill-rule': 'evenodd', 'clip-rule': 'evenodd' }; // holes remain holes in both directions of rotation
+  const evenodd = { 'fill-rule': 'evenodd', 'clip-rule': 'evenodd' }; // holes stay holes in either orientation
 
   return class Inset {
     constructor(run, scene, sheet) {
       Object.assign(this, { run, scene, sheet });
       this.yoke = counterClockwise(sheet.yoke);
       this.limb = counterClockwise(sheet.limb_sheet);
-      this.yokeHoles = sheet.yoke_holes || []; // results of earlier versions have none
+      this.yokeHoles = sheet.yoke_holes || []; // missing in results of earlier versions
       this.limbHoles = sheet.limb_holes || [];
       const relativeReference = relative(scene.reference(sheet.active_part), scene.reference(sheet.limb));
       this.frame(relativeReference);
@@ -56,7 +57,7 @@ steplap.Inset = (() => {
       this.margin = run.channel(`${sheet.joint}.margin`);
       this.pressure = run.channel(`${sheet.joint}.p_req`);
     }
-    // Sets axes along and across the overlap in the reference pose.
+    // Sets the drawing's axes along and across the overlap in the reference pose.
     frame(pose) {
       const limb = this.limb.map((p) => apply(pose, p));
       const lap = isConvex(this.yoke) ? clipped(limb, this.yoke) : isConvex(limb) ? clipped(this.yoke, limb) : [];

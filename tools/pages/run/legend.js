@@ -1,7 +1,7 @@
 // Legend of the picture: scale bar, magnification of the motion, standpoint.
 (() => {
   const make = steplap.make;
-  const strip = 24; // pixels at the foot of the picture
+  const strip = 24; // height of the legend at the foot of the picture, pixels
 
   Object.assign(steplap.Scene.prototype, {
     footHeight() { return strip; },
@@ -24,7 +24,7 @@
         }
       });
     },
-    // Switches between true scale and magnification by the selection field of the page.
+    // Switches between true scale and magnification, as the page's selection field does.
     toggleMagnification() {
       const choice = document.getElementById('magnification');
       if (!choice) return;

@@ -1,15 +1,15 @@
-// The lens: where something slid too little to be seen, both sides of the contact or joint in true displacement, to a scale of their own,
-// with the amount and its limit. It stands in the corner of the picture that is free.
+// Draws a magnified view of a contact or joint whose slide is too small to be seen: both sides in true displacement, with the amount and
+// its limit. The view occupies a free corner of the picture.
 (() => {
   const make = steplap.make, { add, minus, scaled, dot, length, unit, turn, apply, seenIn, relative } = steplap.geometry;
-  const seen = 10; // pixels of a slide that needs no lens
-  const least = 1e-5; // of the machine's size: a slide that is smaller is how contacts give way
-  const shown = 0.6; // of the lens's radius: the largest slide
-  const room = 0.35; // of the lens: what of it may hide bodies
-  const air = 8, textHeight = 16, fieldRoom = 110; // pixels; the last for an arrow of gravity (loads.js)
-  const radiusFor = (width) => Math.min(62, Math.max(38, 0.11 * width)); // pixels
+  const seen = 10; // a slide of more pixels is visible without magnification
+  const least = 1e-5; // smaller slides, relative to the size of the machine, are elastic deformations of contacts
+  const shown = 0.6; // largest slide in the view, relative to its radius
+  const room = 0.35; // largest part of the view that may hide bodies
+  const air = 8, textHeight = 16, fieldRoom = 110; // pixels; `fieldRoom` is reserved for an arrow of gravity (loads.js)
+  const radiusFor = (width) => Math.min(62, Math.max(38, 0.11 * width)); // radius of the view, pixels
 
-  // The slide that decided: of the first criterion, if it limits one, otherwise the largest that the story tells.
+  // Returns the slide to be magnified: that of the first criterion if it limits a slide, otherwise the largest one in the story.
   function decidedBy(run) {
     if (!steplap.overview) return null;
     const { utilisations, story } = steplap.overview.of(run), first = utilisations.find(steplap.overview.isJudged);
@@ -23,7 +23,8 @@
     return name && { name, amount: Math.abs(isFirst ? first.value : told[0].amount.value), limit: limited ? limited.limit : null };
   }
   const middleOf = (ring) => ring.reduce((box, p) => box.take(p), new steplap.Box());
-  // { moving: { body, point }, carrier, normal }: what slid on what, and the direction from the carrier to it, in the carrier's axes.
+  // Returns { moving: { body, point }, carrier, normal }: the sliding point, the body on which it slides, and the normal from this carrier
+  // to the point, in the carrier's axes.
   function contactOf(scene, name) {
     const element = scene.byName.get(name), sheet = scene.run.drawing.sheets.find((s) => s.joint === name);
     if (sheet) {
@@ -63,11 +64,12 @@
         text: piece('text', { class: 'lens-text' })
       });
       this.lens.text.textContent = `slide up to ${q(decided.amount)}${decided.limit ? `, limit ${q(decided.limit)}` : ''}`;
-      this.lens.width = 6.9 * this.lens.text.textContent.length; // pixels
+      this.lens.width = 6.9 * this.lens.text.textContent.length; // estimated width of the text, pixels
       this.legendLayer.append(this.lens.group);
       this.updaters.push((t, pose) => this.showLens(t, pose));
     },
-    // In the corner that hides least of the bodies at the start; nowhere if each hides too much or the slide is seen without it.
+    // Puts the view into the corner where it hides least of the bodies at the start. Omits it if it would hide too much everywhere, or if
+    // the slide is visible without it.
     placeLens() {
       const { lens } = this, r = radiusFor(this.width), rest = (name) => this.reference(name);
       if (!lens) return;
@@ -85,7 +87,7 @@
       lens.group.style.display = isNeeded ? '' : 'none';
     },
     lensBoxes() { return this.lens && this.lens.box ? [this.lens.box] : []; },
-    // Displacement of the place since the start, in the carrier's axes.
+    // Returns the displacement of the sliding point since the start, in the carrier's axes.
     slideAt(t) {
       const { moving, carrier } = this.lens, place = (poseOf) => apply(relative(poseOf(carrier), poseOf(moving.body)), moving.point);
       return minus(place((name) => this.poseAt(name, t)), place((name) => this.reference(name)));
@@ -110,7 +112,7 @@
       lens.ghost.setAttribute('d', line(at, up));
       lens.arrow.setAttribute('d', length(shift) > 4 ? steplap.arrowPath(add(at, scaled(up, 0.5)), add(tip, scaled(up, 0.5)), 7) : 'M0 0');
       for (const [name, value] of [['cx', at[0]], ['cy', at[1]], ['r', r]]) lens.frame.setAttribute(name, value);
-      const slope = (180 / Math.PI) * Math.atan(tangent[1] / tangent[0] || 0); // names run along the contact
+      const slope = (180 / Math.PI) * Math.atan(tangent[1] / tangent[0] || 0); // names are written along the contact
       lens.names.forEach((name, k) => {
         const middle = add(at, scaled(n, (k ? 0.7 : -0.7) * r));
         this.put(name, name.textContent, middle[0], middle[1] + 4, 'middle');

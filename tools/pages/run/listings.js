@@ -1,4 +1,4 @@
-// Long lists that can be opened: events, extremes of all channels, the model's text, then files, programs and digests.
+// Long lists that the reader can open: events, extremes of all channels, text of the model, then files, programs and digests.
 steplap.listings = (() => {
   const make = steplap.make, { table, fold } = steplap.tables, { column, instant, roundingIn, isKnown, full, withUnit } = steplap.numbers;
   const tall = (content) => make('div', { class: 'tall', tabindex: '0' }, content);
@@ -38,7 +38,7 @@ steplap.listings = (() => {
     }));
     return [make('span', { title: meaning }, name), ...cells];
   }
-  const most = 1000; // rows shown at once
+  const most = 1000; // largest number of rows shown at once
   function extremes(box, runs) {
     const names = steplap.data.unique(runs.map((r) => Object.keys(r.summary.extremes)));
     const heads = [
@@ -63,7 +63,7 @@ steplap.listings = (() => {
     box.append(part);
   }
 
-  // Table of the parameters: one row per parameter, one column per run.
+  // Builds a table of the parameters: one row per parameter, one column per run.
   function parameters(box, runs) {
     const of = (run) => run.summary.model.parameters || [];
     const names = steplap.data.unique(runs.map((run) => of(run).map((p) => p.name)));
@@ -80,7 +80,7 @@ steplap.listings = (() => {
 
   function models(box, runs) {
     parameters(box, runs);
-    // Each core is shown once, also if several runs share it. As an image it keeps its own style.
+    // Each core is shown once, even if several runs have it. It is included as an image, so that the page's style does not affect it.
     const cores = new Map(runs.flatMap((run) => (run.drawing.cores || []).map((core) => [core.svg, core.name])));
     if (cores.size) {
       const images = [...cores].map(([svg, name]) => make('img', {
@@ -93,7 +93,7 @@ steplap.listings = (() => {
     for (const run of runs) box.append(fold(`Model of ${run.name}, as it was run`, false, make('pre', { tabindex: '0' }, run.model_text)));
   }
 
-  // Origin of the results, for readers who want to check or repeat them.
+  // Builds the list of files, programs and digests with which the results can be checked or repeated.
   function origin(box, runs) {
     const rows = [
       ['title', (r) => r.summary.model.title || '–'],

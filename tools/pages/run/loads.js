@@ -1,19 +1,19 @@
-// Draws the loads (causes.js) at the instant shown: an arrow, or an arc for a rotation, with its value. It is filled while the load acts;
-// before and after it is hollow and shows the largest value of the run.
+// Draws the loads (causes.js) at the time shown: an arrow, or an arc for a rotation, with its value. It is filled while the load acts;
+// before and after, only the outline and the largest value of the run are shown.
 (() => {
   const make = steplap.make, { add, minus, scaled, dot, length } = steplap.geometry;
-  const acting = 0.02; // of the largest value; smaller ones count as zero
-  const least = 0.25; // of the largest arrow; shortest visible arrow
-  const longest = 4.5; // of a load's arrow, in sizes of symbols
-  const corner = [22, 26]; // pixels from the picture's corner: where an arrow of gravity begins
+  const acting = 0.02; // smaller values, relative to the largest, count as zero
+  const least = 0.25; // shortest arrow, relative to the largest
+  const longest = 4.5; // longest arrow, in sizes of symbols
+  const corner = [22, 26]; // start of an arrow of gravity, in pixels from the corner of the picture
 
   Object.assign(steplap.Symbols.prototype, {
-    // Draws the loads that are no elements: speeds at the start and gravity.
+    // Draws initial velocities and gravity, which belong to no element.
     loadsWithoutElement() {
       for (const load of this.scene.causes())
         if (!load.shape || !this.scene.byName.has(load.element.name)) this.acting(load);
     },
-    // An arrow or an arc, with its text.
+    // Creates an arrow or an arc with its text.
     acting(load) {
       const isArc = load.shape && load.shape.type === 'arc', style = (load.shape && load.shape.style) || 'drive';
       const symbol = this.piece(load.element, { class: isArc ? `symbol arc load ${style}` : 'symbol drive load' });
@@ -35,7 +35,7 @@
       if (isField) return element.name;
       return `${element.signal || element.name}${isActing ? ` ${text(Math.abs(value))}` : `, ${text(peak)} at most`}`;
     },
-    // Drives and motors stand before what they move, forces where they act.
+    // Returns the position of an arrow: in front of the body for drives and motors, at the point of action for forces.
     loadPlace({ shape, along }) { return !shape ? null
                                     : along     ? shape.at[0]
                                                 : this.frontOf(shape); },
@@ -47,7 +47,7 @@
     broaden(symbol, at, load, share, t, pose, isBackward) {
       const { shape, along, isField } = load, size = longest * this.u * share;
       const d = along ? this.forceDirection(along(t)) : this.direction(shape, pose);
-      // A force on a body comes from outside: it pulls where it leads away from the centre of gravity, and pushes elsewhere.
+      // An arrow of an external force is drawn as pushing if it points towards the centre of gravity, otherwise as pulling.
       const isPush = along && !isField && dot(d, minus(at, this.screen({ body: shape.at[0].body, point: [0, 0] }, pose))) < -1;
       const far = isPush ? minus(at, scaled(d, size)) : add(at, scaled(d, size)), isTurned = isPush || isBackward;
       const [tail, tip] = isTurned ? [far, at] : [at, far];
@@ -59,7 +59,7 @@
       return length(d) > 0 ? scaled(d, 1 / length(d)) : [0, 1];
     },
   });
-  // Outline of a broad arrow, closed so that it can be filled.
+  // Returns the closed outline of a broad arrow.
   function broadArrow(tail, tip, d, u) {
     const n = [-d[1], d[0]], head = minus(tip, scaled(d, 0.9 * u));
     const at = (p, k) => add(p, scaled(n, k * u)).map((v) => v.toFixed(1)).join(' ');

@@ -1,9 +1,9 @@
-// Draws parts of bodies that the model describes by [[look]]: wheels, windings, wooden blocks, feet, tanks with oil, roads and rails.
+// Draws parts of bodies given by [[look]] in the model: wheels, windings, wooden blocks, feet, tanks with oil, roads and rails.
 (() => {
   const make = steplap.make;
-  const turns = 9; // lines per winding
-  const strip = 22; // pixels; depth of a road below its surface
-  const apart = 38; // pixels between the dashes of a road or the sleepers of a track
+  const turns = 9; // number of lines in a winding
+  const strip = 22; // depth of a road below its surface, pixels
+  const apart = 38; // distance between the dashes of a road or the sleepers of a track, pixels
   let clips = 0; // ids of clip paths are unique in the page
 
   const rect = ([x, y], [w, h], style) => make('path', { class: style, d: `M${x - 0.5 * w} ${y - 0.5 * h}h${w}v${h}h${- w}Z` });
@@ -30,7 +30,7 @@
     },
     foot: (look, at) => [rect(at, look.size, 'foot')],
   };
-  // A tank: the wall is the inner half of a line along the outline; oil fills the part below its level.
+  // Returns the shapes of a tank. The wall is the inner half of a line along the outline; oil fills the part below its level.
   function tank(look, body) {
     const id = `tank-${clips++}`, low = Math.min(...body.outline.map((p) => p[1])), reach = 2 * body.reach;
     const inside = { 'clip-path': `url(#${id})` }, parts = [make('clipPath', { id }, make('path', { d: ring(body.outline) }))];
@@ -41,7 +41,7 @@
 
   Object.assign(steplap.Scene.prototype, {
     looksOf(name) { return (this.run.drawing.looks || []).filter((look) => look.body === name); },
-    // Returns the shapes of a body's looks in its axes.
+    // Returns the shapes of a body's parts in its axes.
     looksShapes(body) {
       const partsOf = (look) => (drawn[look.draw] ? look.at.flatMap((at) => drawn[look.draw](look, at)) : []);
       return this.looksOf(body.name).flatMap((look) => (look.draw === 'tank' ? tank(look, body) : partsOf(look)));
@@ -72,7 +72,7 @@
       }
     },
     screenOf(name, point, pose) { return this.toScreen(this.placed({ body: name, point }, pose)); },
-    // Returns the distance that the followed vehicle has travelled; the marks of its road move by it.
+    // Returns the distance by which the marks of the road have moved past the followed vehicle at time t.
     passedAt(t) {
       const journey = this.seenFrom === 'ground' ? null : this.journey();
       return journey ? journey.travel(t)[0] : 0;

@@ -2,10 +2,10 @@
 // the screen (this.u) at any zoom; bodies have their true size.
 steplap.Scene = (() => {
   const make = steplap.make, { add, minus, scaled, length, unit, apply } = steplap.geometry, Box = steplap.Box;
-  const margin = 36; // for symbols, pixels
-  const nearby = 0.75; // of the machine's size; bodies farther away leave the picture
-  const most = 6; // largest view, in sizes of the machine, that includes the instant at which the page opens
-  const symbolSize = (width) => Math.min(11, Math.max(7, width / 70)); // pixels
+  const margin = 36; // space for symbols around the machine, pixels
+  const nearby = 0.75; // a body farther away than this, relative to the size of the machine, may leave the picture
+  const most = 6; // largest size of the view, relative to the machine, for including the opening instant
+  const symbolSize = (width) => Math.min(11, Math.max(7, width / 70)); // size of a symbol, pixels
 
   class Body {
     constructor(raw, run) {
@@ -13,7 +13,7 @@ steplap.Scene = (() => {
       this.run = run;
       const names = ['x', 'y', 'theta'].map((c) => run.channel(`${raw.name}.${c}`));
       this.channels = names.every(Boolean) && !raw.fixed ? names : null;
-      // Points whose displacement is shown; of a circle its centre.
+      // Points of the body whose displacement is examined; for a circle its centre.
       this.points = [
         ...this.outline, ...steplap.partsOf(run, raw.name), ...this.polygons.flat(), ...this.circles.map((c) => [c[0], c[1]]),
         ...this.segments.flatMap((s) => [[s[0], s[1]], [s[2], s[3]]])
@@ -29,8 +29,8 @@ steplap.Scene = (() => {
       if (this.run.poseOf) return this.run.poseOf(this.name, t) || this.pose;
       return this.channels ? this.channels.map((c) => c.at(t)) : this.pose;
     }
-    // Returns the largest deviation, m, from straight motion between two rows at the recorded speeds. Where it is large, the motion between
-    // the rows is not known.
+    // Returns an upper estimate, m, of the deviation from straight motion between two recorded rows, from the recorded speeds. If it is
+    // large, the motion between the rows is unknown.
     guessAt(t) {
       const [x, y] = this.channels || [], speeds = ['vx', 'vy'].map((c) => this.run.channel(`${this.name}.${c}`));
       if (!x || !speeds.every(Boolean)) return 0;
@@ -60,7 +60,7 @@ steplap.Scene = (() => {
           this.limbs.set(e.limb, e);
           this.yokes.add(e.active_part);
         }
-      // Results of earlier versions have a symbol instead of shapes.
+      // In results of earlier versions an element has one symbol instead of shapes.
       this.elements =
         run.drawing.elements.filter((e) => e.symbol !== 'hidden')
           .map((e) => (e.shapes ? e : {...e, shapes: [{ type: e.symbol, at: e.at, direction: e.direction, quantity: 'force' }] }));
@@ -74,7 +74,7 @@ steplap.Scene = (() => {
       this.build();
     }
 
-    // --- what is seen: reference poses, magnified differences ----------------------------------------
+    // --- reference poses and magnified motion ----------------------------------------------------------
     body(name) { return this.bodies.get(name) || this.ground; }
     reference(name) { return this.body(name).pose; }
     poseAt(name, t) { return this.body(name).poseAt(t); }
@@ -90,22 +90,22 @@ steplap.Scene = (() => {
       if (!this.ground.isPoint) this.ground.extend(own, [0, 0, 0]);
       if (own.isEmpty) return box.isEmpty ? box.take([-1, -1]).take([1, 1]) : box;
       if (box.isEmpty) return own;
-      // Long tracks and floors are shown only near places where something happens.
+      // Only parts of long tracks and floors near contacts are shown.
       const reach = 0.35 * Math.max(...box.span), low = [...box.low], high = [...box.high];
       for (const end of [own.low, own.high]) box.take(end.map((v, i) => Math.min(Math.max(v, low[i] - reach), high[i] + reach)));
       return box;
     }
 
-    // Returns true if the pose at t lies between rows and may be visibly wrong.
+    // Returns true if the pose at t is interpolated and may be visibly wrong.
     isGuessed(t) { return [...this.bodies.values()].some((body) => body.guessAt(t) > 0.05 * this.size); }
 
-    // --- where it is seen from ------------------------------------------------------------------------
-    // Poses at some times of the run, for decisions that depend on where bodies will be.
+    // --- view -----------------------------------------------------------------------------------------
+    // Returns the poses at some times of the run, for choices that depend on the whole motion.
     samples() {
       const count = this.bodies.size > 200 ? 8 : 60;
       return Array.from({ length: count + 1 }, (_, k) => this.look((this.run.end * k) / count, this.seenFrom, this.magnification));
     }
-    // Chooses standpoint and magnification, and the part of the plane that this needs.
+    // Chooses the reference body, the magnification, and the part of the plane that is shown.
     choose(seenFrom, magnification) {
       this.seenFrom = seenFrom;
       this.magnification = magnification;
@@ -119,28 +119,28 @@ steplap.Scene = (() => {
           for (const corner of [own.low, own.high]) box.take(near.nearest(corner));
         }
       this.takeOpening(box, Math.max(...still.span));
-      // Space for springs that carry a body from below.
+      // Extra space for springs under a body.
       const isBelow = (s) => s.type === 'spring' && this.isTied(s) && this.isHeld(s.at[1].body) && Math.abs(s.direction[1]) > 0.7;
       const isCarried = this.elements.some((e) => e.shapes.some((s) => isBelow(s) && !this.wheelsOf(s.at[1].body).length));
       if (isCarried) box.take([box.middle[0], box.low[1] - 0.12 * this.size]);
       this.trails = null;
       return box;
     }
-    // Extends the view to the machine at the instant at which the page opens.
+    // Extends the view to include the machine at the instant at which the page opens.
     takeOpening(box, size) {
       if (this.opening === undefined) return;
       const own = new Box(), pose = this.look(this.opening, this.seenFrom, this.magnification);
       for (const body of this.bodies.values()) body.extend(own, pose(body.name));
       if (!own.isEmpty && Math.max(...box.joined(own).span) < most * size) box.take(own.low).take(own.high);
     }
-    // Space for symbols at the left and right, above and below. The arrow of a load is in front of all bodies that it moves.
+    // Returns the space for symbols at the sides, top and bottom. The arrow of a load is drawn in front of all bodies that it moves.
     margins(width) {
       const drives = this.elements.flatMap((e) => e.shapes.filter((s) => s.type === 'arrow').map((s) => s.direction || [0, 0]));
       const loads = this.causes().filter(({ shape }) => shape && shape.type === 'arrow');
       const ways = [...drives, ...loads.map((load) => (load.along ? unit(load.along(load.peakAt)) : load.shape.direction))];
       return [0, 1].map((i) => (ways.some((d) => Math.abs(d[i]) > 0.3) ? Math.max(margin, 5.5 * symbolSize(width)) : margin));
     }
-    // Fits a box of `span` around `middle` into a picture of the given size in pixels.
+    // Fits a box of size `span` around `middle` into a picture of the given size in pixels.
     fit(middle, span, width, tallest, margins = this.margins(width)) {
       this.width = width;
       this.u = symbolSize(width);
@@ -156,7 +156,7 @@ steplap.Scene = (() => {
       this.fitSymbols();
       this.spreadNames();
     }
-    // Uses the part of the plane and the places of names of another picture of the same machine.
+    // Takes over the view and the positions of names from another picture of the same machine.
     fitLike(other) {
       this.choose(other.seenFrom, other.magnification);
       for (const name of ['width', 'u', 'height', 'middle', 'fittedScale']) this[name] = other[name];
@@ -207,13 +207,13 @@ steplap.Scene = (() => {
       for (const [x, y, r, isRing] of body.circles) {
         shapes.push(make('circle', { cx: x, cy: y, r, class: isRing ? 'ring' : 'round' }));
         if (!isRing && body !== this.ground)
-          shapes.push(make('path', { d: `M${x} ${y}l${r} 0`, class: 'spoke' })); // makes the rotation visible
+          shapes.push(make('path', { d: `M${x} ${y}l${r} 0`, class: 'spoke' })); // a spoke shows the rotation
       }
       for (const [from, to] of this.strutsOf(body)) shapes.push(make('path', { d: `M${from.join(' ')}L${to.join(' ')}`, class: 'strut' }));
       for (const [x0, y0, x1, y1, thickness] of body.segments) shapes.push(this.bar([x0, y0], [x1, y1], thickness));
       return shapes;
     }
-    // Struts from the outline to places outside it at which contacts and joints act: outriggers, feet, brackets.
+    // Returns lines from the outline to points outside it at which contacts and joints act: outriggers, feet, brackets.
     strutsOf(body) {
       if (body.outline.length < 3) return [];
       const struts = [], least = 0.01 * body.reach;
@@ -221,7 +221,8 @@ steplap.Scene = (() => {
         for (const shape of e.shapes)
           for (const place of shape.at) {
             if (place.body !== body.name || shape.direction === undefined || steplap.forms.isInside(body, place.point)) continue;
-            if (shape.type === 'contact' && place !== shape.at[0]) continue; // a line has no end
+            // the second point of a contact defines a line, not a part of the body
+            if (shape.type === 'contact' && place !== shape.at[0]) continue;
             if (!['contact', 'spring'].includes(shape.type) || (shape.type === 'spring' && this.isTied(shape))) continue;
             const from = steplap.forms.nearest(body, place.point), far = length(minus(place.point, from));
             if (far > least && far < 2 * body.reach && !struts.some(([, to]) => length(minus(to, place.point)) < least))
@@ -229,7 +230,7 @@ steplap.Scene = (() => {
           }
       return struts;
     }
-    // Returns true for a tank, which is drawn behind the bodies inside it.
+    // Returns true for a body that encloses others, such as a tank, and is drawn behind them.
     isAround(body) {
       if (body.outline.length < 3 || this.bodies.size > 40) return false;
       const box = new Box(), isWithin = (inner) => [0, 1].every((i) => inner.low[i] > box.low[i] && inner.high[i] < box.high[i]);
@@ -240,7 +241,7 @@ steplap.Scene = (() => {
         return other !== body && !other.isPoint && isWithin(inner);
       });
     }
-    // Returns true for a spring along an axis whose ends coincide at rest; it is drawn between outlines (springs.js).
+    // Returns true for a spring along an axis whose end points coincide in the reference pose. It is drawn between outlines (springs.js).
     isTied(shape) {
       const [a, b] = shape.at.map((place) => this.placed(place, (name) => this.reference(name)));
       const d = shape.direction && steplap.geometry.turn(shape.direction, this.reference(shape.at[1].body)[2]);
@@ -261,7 +262,7 @@ steplap.Scene = (() => {
       const isShown = isGround || body.fixed || body.isLookAlone || body.is_outline_given || body.circles.length || body.polygons.length;
       const centre = isShown ? null : this.centreMark(body);
       if (!isGround) this.addGhost(body);
-      if (!isGround && !body.isLookAlone) this.addName(body); // wheels need no name
+      if (!isGround && !body.isLookAlone) this.addName(body); // wheels get no name
       const since = joint && this.run.events.find((e) => e[1] === joint.name && (e[4] === 'slip' || e[4] === 'apart'));
       this.updaters.push((t, pose) => {
         const [x, y, angle] = pose(body.name), c = this.scale * Math.cos(angle), s = this.scale * Math.sin(angle);
@@ -272,7 +273,7 @@ steplap.Scene = (() => {
         if (joint) group.classList.toggle('slipped', Boolean((since && t >= since[0]) || this.run.modeAt(joint.name, t) >= 2));
       });
     }
-    // Style classes of a body.
+    // Returns the style classes of a body.
     kindsOf(body) {
       const { name } = body, kinds = {
         fixed: body.fixed,
@@ -284,7 +285,7 @@ steplap.Scene = (() => {
       };
       return Object.keys(kinds).filter((kind) => kinds[kind]);
     }
-    // A circle with two quarters filled, as drawings mark a centre of gravity.
+    // Returns the symbol of a centre of gravity: a circle with two filled quadrants.
     centreMark(body) {
       const mark = make('g', { class: 'centre', 'data-centre': body.name }, make('title', {}, body.label || body.name),
         make('circle', { r: 1 }), make('path', { d: 'M0 0V-1A1 1 0 0 1 1 0ZM0 0V1A1 1 0 0 1 -1 0Z' }));

@@ -1,4 +1,5 @@
-// The page: one clock for picture, timeline and curves. The first screen is built first; the rest follows once the browser has painted it.
+// The page of runs: one clock drives picture, timeline and curves. The first screen is built first, the rest after the browser has painted
+// it.
 (() => {
   const make = steplap.make, runs = steplap.data.runs, at = (id) => document.getElementById(id);
   const end = Math.max(...runs.map((r) => r.end)), isOne = runs.length === 1;
@@ -6,7 +7,7 @@
   let t = 0, last = null, plots = null, isUntouched = true, horizon = steplap.overview.horizonOf(runs);
   const scenes = [], insets = [];
 
-  // Uses the colours of paper while `action` runs: saved files are black on white whatever the screen shows.
+  // Runs `action` with the colours of paper, so that saved files are black on white for any theme of the screen.
   steplap.onPaper = (action) => {
     document.documentElement.classList.add('paper');
     try {
@@ -89,8 +90,8 @@
     }
   }
   const isPrinted = window.matchMedia('print');
-  // Returns the height left for the pictures on the first screen. Below 900 pixels of width the parts are stacked (page.css), and a picture
-  // gets a share of the screen.
+  // Returns the height available for the pictures on the first screen. Below a width of 900 pixels the parts are stacked (page.css), and a
+  // picture gets half of the screen.
   function tallest() {
     if (window.innerWidth <= 900) return Math.max(220, Math.min(0.5 * window.innerHeight, 700));
     const heightOf = (id) => (at(id).hidden ? 0 : at(id).getBoundingClientRect().height);
@@ -105,11 +106,11 @@
   function fit() {
     if (isPrinted.matches) return;
     const widths = scenes.map((s) => Math.max(240, s.svg.parentNode.clientWidth));
-    put(widths, 260); // so that the parts around it can be measured
+    put(widths, 260); // needed to measure the parts around the picture
     timeline.build();
     put(widths, tallest());
   }
-  // As wide as an A4 sheet, in pixels of the style sheet.
+  // Sets the width of an A4 sheet for printing, in CSS pixels.
   function fitPaper() {
     const whole = 700;
     put(scenes.map(() => (isOne ? whole : 0.48 * whole)), isOne ? 400 : 280);
@@ -146,13 +147,13 @@
     t = Math.min(Math.max(time, 0), end);
     at('now').textContent = `t = ${
       t.toFixed(t > 0 ? Math.max(decimals, Math.min(6, 2 - Math.floor(Math.log10(t))))
-                      : decimals)} s`; // at least three digits for long and short runs
+                      : decimals)} s`; // at least three digits for short and long runs
     for (const scene of scenes) scene.show(t);
     for (const inset of insets) inset.show(t);
     timeline.show(t);
     if (plots) plots.show(t);
   }
-  // Goes to an instant requested by the reader.
+  // Shows the instant that the reader has selected.
   function go(time) {
     isUntouched = false;
     setPlaying(false);
@@ -162,7 +163,7 @@
     at('play').replaceChildren(steplap.icon(isPlaying ? 'pause' : 'play'), isPlaying ? ' Pause' : ' Play');
     at('play').setAttribute('aria-pressed', String(isPlaying));
     last = null;
-    // The page opens at the instant that shows best what happened (overview.js); playing starts from the beginning.
+    // Playing starts from the beginning, also on a new page, which opens at a later instant (overview.js).
     if (isPlaying && (t >= timeline.end || isUntouched)) show(0);
     if (isPlaying) {
       isUntouched = false;
@@ -177,7 +178,7 @@
     if (t >= timeline.end) setPlaying(false);
     else requestAnimationFrame(frame);
   }
-  // The time axis ends with the last main event, or with the run.
+  // Sets the end of the time axis: the last main event, or the end of the run.
   function setHorizon(wanted) {
     timeline.end = wanted;
     at('time').max = String(wanted);
@@ -216,7 +217,7 @@
     let seen = [document.documentElement.clientWidth, window.innerHeight];
     window.addEventListener('resize', () => {
       const now = [document.documentElement.clientWidth, window.innerHeight];
-      // On a telephone the height changes during scrolling, which needs no redrawing.
+      // On telephones scrolling changes the height; this needs no redrawing.
       if (isPrinted.matches || (now[0] === seen[0] && (now[1] === seen[1] || now[0] < 900))) return;
       seen = now;
       fit();
@@ -225,7 +226,7 @@
   }
 
   // --- curves, tables --------------------------------------------------------------------------------
-  // Shows the curve and the instant of a bar.
+  // Shows the curve of a utilisation and the instant at which it is largest.
   function jump(utilisation, run) {
     if (utilisation.at !== null && utilisation.at !== undefined) go(utilisation.at);
     const plot = plots && utilisation.channel ? plots.figureWith(utilisation.channel, run) : null;
@@ -235,7 +236,7 @@
     plot.box.scrollIntoView(
       { block: 'center', behavior: window.matchMedia('(prefers-reduced-motion: reduce)').matches ? 'auto' : 'smooth' });
   }
-  // Chooses the element whose events the curves show.
+  // Selects the element whose events are marked on the curves.
   function chooseEvents() {
     const names = steplap.data.unique(runs.map((run) => run.events.filter((e) => steplap.signs.has(e[4])).map((e) => e[1])));
     const elements = names.slice(0, 100).map((name) => [`of ${name}`, name]);

@@ -1,10 +1,10 @@
-// Marks on curves: limits as lines, the largest value of each curve as a dot with its value. Texts that would overlap or leave the figure
-// are moved; without room only the dot is drawn, with its value in the title.
+// Marks on curves: limits as lines, and the largest value of each curve as a dot with its value. Texts that would overlap or leave the
+// figure are moved; if there is no room, only the dot is drawn, with its value in the tooltip.
 steplap.marks = (() => {
   const make = steplap.make, { one, onScale, isKnown } = steplap.numbers;
-  const most = 4; // dots with a value in one figure
+  const most = 4; // largest number of dots with a value in a figure
 
-  // Returns the limits for the curves of a figure in their own unit: [{ value, text }].
+  // Returns the limits of a figure's curves in the unit of the curves: [{ value, text }].
   function limitsOf(series) {
     const found = [];
     for (const s of series) {
@@ -16,11 +16,12 @@ steplap.marks = (() => {
     }
     return found;
   }
-  // Returns true for limits that extend the axis: those not far beyond the values reached.
+  // Returns true for limits that are close to the values of the curves, so that the axis is extended to show them.
   const isNear = (value, low, high) =>
     Math.abs(value) <= 1.6 * Math.max(Math.abs(low), Math.abs(high)) && (value >= 0 ? high > 0 || value <= high : low < 0);
 
-  // Returns the decisive extreme of a channel: the one that a criterion limits, the minimum of a margin, otherwise the larger one.
+  // Returns the extreme to be marked: the one that a criterion limits, the minimum of a margin, otherwise the one with the larger
+  // magnitude.
   function worstEnd(s, e) {
     const u = steplap.overview.of(s.run).utilisations.find((each) => each.channel === s.name && isKnown(each.value));
     if (u && (u.value === e.min || u.value === e.max)) return u.value === e.min ? 'min' : 'max';
@@ -34,11 +35,11 @@ steplap.marks = (() => {
     return isFinite(e[key]) && isKnown(e[`t_${key}`]) && e.max > e.min ? { s, t: e[`t_${key}`], value: e[key], error: e[`error_${key}`] }
                                                                        : null;
   }
-  // Width of a text of 11 pixels, with some margin.
+  // Returns the estimated width of a text of 11 pixels height, with a margin.
   const widthOf = (text) => 6.9 * text.length + 6;
   const meet = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
 
-  // Draws the marks. `place` is { x(t), y(value), left, top, right, bottom } in pixels of `svg`; `colourOf(series)` returns a CSS colour.
+  // Draws the marks. `place`: { x(t), y(value), left, top, right, bottom } in pixels of `svg`. `colourOf(series)` returns a CSS colour.
   function draw(svg, { drawn: series, limits, scale }, place, colourOf) {
     svg.replaceChildren();
     const taken = [];

@@ -1,10 +1,10 @@
-// Shows one mode at a time in motion: rest + amplitude Re(shape exp(i phase)). The scene's time is in periods.
+// Animates one vibration mode at a time: rest + amplitude Re(shape exp(i phase)). The scene's time is in periods.
 (() => {
   const { apply, minus, length } = steplap.geometry;
   const make = steplap.make, at = (id) => document.getElementById(id), { plain } = steplap.data;
   const run = steplap.data.runs[0], found = steplap.data.modes, modes = found.modes;
-  const cycle = 1.6; // seconds on the screen per period
-  const memory = 3; // a motion without oscillation is shown until it has decayed or grown by exp(3)
+  const cycle = 1.6; // duration of a period on the screen, s
+  const memory = 3; // a motion without oscillation is shown until its amplitude has changed by a factor exp(3)
   let mode = modes[0], amplitude = 0, phase = 0, last = null;
 
   const oscillates = (m) => m.imaginary !== 0;
@@ -18,7 +18,7 @@
   const damping = (m) =>
     (oscillates(m) ? `${plain(Math.abs(m.damping_ratio) < 1e-9 ? 0 : 100 * m.damping_ratio, 4)} %` : `${plain(m.real, 4)} /s`);
 
-  // Returns the factor of the mode at t periods.
+  // Returns the complex factor of the mode after t periods.
   function factor(t) {
     if (!oscillates(mode)) return [Math.exp(mode.real > 0 ? memory * (t - 1) : -memory * t), 0];
     const size = at('decaying').checked ? Math.exp((2 * Math.PI * t * mode.real) / mode.imaginary) : 1;
@@ -46,7 +46,7 @@
     scene.show(t);
   };
   function fit() {
-    // The largest displacement is a twentieth of the picture.
+    // The amplitude gives a largest displacement of 1/20 of the picture.
     amplitude = 1;
     let furthest = 0;
     for (let k = 0; k < 8; ++k)

@@ -1,5 +1,5 @@
-// Contents of the first screen, as given in the summary. For results of earlier versions without overview only events and judgement are
-// shown, with a note: nothing is judged here.
+// Contents of the first screen, taken from the summary; the page judges nothing. Results of earlier versions have no overview: only events
+// and judgement are shown, with a note.
 steplap.overview = (() => {
   const sentences = {
     hold: 'All criteria of the model are met.',
@@ -43,15 +43,15 @@ steplap.overview = (() => {
     }
     return found.get(run);
   }
-  // Returns { word, name }: the text of the badge and its style class.
+  // Returns { word, name } for the badge: its text and its style class.
   function badgeOf(run) {
     const { verdict, is_judged: isJudged } = of(run);
     if (isJudged !== false && verdict in words) return { word: words[verdict], name: verdict };
     return { word: isJudged !== false && verdict ? String(verdict).toUpperCase() : 'NO CRITERIA', name: 'none' };
   }
-  // Results of earlier versions do not mark the utilisations of criteria; these have a limit.
+  // Earlier versions do not mark judged utilisations; they have a limit.
   const isJudged = (u) => u.is_judged ?? (u.limit !== null && u.limit !== undefined);
-  // Returns the worst instant of the run that is nearest to or farthest beyond its limits; null if none has one.
+  // Returns the worst instant of the run with the largest utilisation; null if no run has a worst instant.
   function worstOf(runs) {
     const shareOf = (o) => {
       const u = o.utilisations.find(isJudged) || o.utilisations[0];
@@ -62,10 +62,10 @@ steplap.overview = (() => {
   }
   // Entries of the story have verbs of their own (mbd/run/story.cpp), which are not the words of events.
   const isAbout = (entry, verb) => entry.what === verb;
-  // --- the instant that shows what the verdict or the story says ------------------------------------------
-  const leaders = ['tips', 'comes apart', 'breaks', 'slips', 'lifts', 'opens']; // of a run without criteria, the gravest first
-  const leastTurn = (3 * Math.PI) / 180; // of a body that is seen to tip
-  // Returns the time of the largest force of a contact that closes; for other entries the time at which they begin.
+  // --- instant at which the page opens ---------------------------------------------------------------
+  const leaders = ['tips', 'comes apart', 'breaks', 'slips', 'lifts', 'opens']; // order of importance in a run without criteria
+  const leastTurn = (3 * Math.PI) / 180; // smallest rotation that is visible as tipping, rad
+  // Returns the time of the largest force for a contact that closes; for other entries their begin.
   function pressedAt(run, entry) {
     const force = run.summary.extremes[`${entry.who[0]}.force`];
     return isAbout(entry, 'closes') && force ? force.t_max : entry.from;
@@ -76,7 +76,7 @@ steplap.overview = (() => {
     if (slide && slide.max > slide.min) return slide.max > -slide.min ? slide.t_max : slide.t_min;
     return entry.to ?? run.end;
   }
-  // Returns the largest rotation of any of the bodies up to `until`, rad, and its time.
+  // Returns the largest rotation of these bodies up to `until`, rad, and its time.
   function furthestTurn(run, names, until) {
     let best = { t: 0, turn: 0 };
     for (const angle of names.map((name) => run.channel(`${name}.theta`)).filter(Boolean)) {
@@ -86,8 +86,8 @@ steplap.overview = (() => {
     }
     return best;
   }
-  // Returns the time that shows an entry of the story: the largest rotation of a body that tips, the end of a slide, the largest rotation
-  // or gap of a body that lifts, before the next contact closes.
+  // Returns the time that best shows an entry of the story: the largest rotation of a tipping body; the end of a slide; the largest
+  // rotation or gap of a lifting body, before the next contact closes.
   function instantOfEntry(run, entry, story) {
     const placesOf = (name) => (run.drawing.elements.find((e) => e.name === name) || { at: [] }).at;
     const bodies = entry.what === 'tips' ? entry.who
@@ -103,7 +103,7 @@ steplap.overview = (() => {
     return Math.max(0, ...[...scene.bodies.values()].map((body) => scene.shiftOf(body, pose)));
   }
   const isSeenToMove = (scene, t) => largestShift(scene, t) > 0.005 * scene.size;
-  // Returns the time at which the machine is farthest from its start, for runs in which nothing else is visible.
+  // Returns the time of the largest displacement from the start, for runs without entries.
   function furthestInstant(scene) {
     const times = Array.from({ length: 61 }, (_, k) => (scene.run.end * k) / 60), far = times.map((t) => largestShift(scene, t));
     return times[far.indexOf(Math.max(...far))];
@@ -119,8 +119,8 @@ steplap.overview = (() => {
     const t = instantOfEntry(run, told, story), furthest = isSeenToMove(scene, t) ? t : furthestInstant(scene);
     return isSeenToMove(scene, furthest) ? furthest : t;
   }
-  // Returns the instant for the run that is nearest to its limits. If the motion around it was not recorded (machine.js), the nearest
-  // recorded instant.
+  // Returns the opening instant for the run that is nearest to its limits. If the motion there was not recorded (machine.js), returns the
+  // nearest recorded instant.
   function openingOf(scenes) {
     const worst = worstOf(scenes.map((s) => s.run)),
           first = scenes.find((s) => worst !== null && of(s.run).worst_instant === worst) || scenes[0], wanted = instantOf(first);
@@ -132,8 +132,8 @@ steplap.overview = (() => {
     const power = 10 ** Math.floor(Math.log10(t));
     return Number((power * [1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10].find((k) => k * power >= 0.999999 * t)).toPrecision(3));
   }
-  // Returns the end of the time axis: shortly after the last event and worst instant if most of the run follows them, otherwise the end of
-  // the runs.
+  // Returns the end of the time axis: shortly after the last event and worst instant, if most of the run follows them; otherwise the end of
+  // the longest run.
   function horizonOf(runs) {
     const isCounted = (e) => e[0] > 0 && steplap.signs.has(e[4]);
     const end = Math.max(...runs.map((run) => run.end)), events = runs.flatMap((run) => run.events.filter(isCounted).map((e) => e[0]));

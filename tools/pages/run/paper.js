@@ -1,9 +1,9 @@
-// Draws a figure of curves for printing and for files, over the time window that is shown.
+// Draws a figure of curves for printing and for files, over the visible time window.
 steplap.paper = (() => {
   const make = steplap.make;
   const width = 345, left = 50, right = 6, rowHeight = 10;
 
-  // Draws axes with their numbers. Returns the functions that map values to places.
+  // Draws the axes with numbers. Returns the functions that convert times and values to positions.
   function axes(svg, plot, [t0, t1], [y0, y1], top, h) {
     const w = width - left - right;
     const x = (t) => left + (w * (t - t0)) / (t1 - t0), y = (v) => top + (h * (y1 - v)) / (y1 - y0);

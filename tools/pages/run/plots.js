@@ -1,7 +1,7 @@
 // Time histories in dygraphs. Zoom and pan are linked between all figures and with the time of the drawing.
 steplap.Plots = (() => {
   const make = steplap.make;
-  const curves = 7; // colours of curves: --curve-1 to --curve-7 in page.css
+  const curves = 7; // number of curve colours: --curve-1 to --curve-7 in page.css
   const dashes = [null, [8, 3], [3, 3], [10, 3, 2, 3]];
   const eventStyles = [
     { roles: ['slip', 'apart', 'break'], colour: 'slips', dash: [], name: 'slips' },
@@ -40,7 +40,7 @@ steplap.Plots = (() => {
       });
       this.area.addEventListener('mouseleave', () => { this.eventName.hidden = true; });
       this.overlay = make('svg', { class: 'marks', 'aria-hidden': 'true' });
-      this.area.addEventListener('dblclick', () => setTimeout(() => this.owner.zoomOut())); // back to the scale of all
+      this.area.addEventListener('dblclick', () => setTimeout(() => this.owner.zoomOut())); // returns to the scale of all figures
     }
     addSeries(run, name, sign, isBound) {
       const prior = this.series.find((s) => s.name === name && s.isBound === isBound),
@@ -112,7 +112,7 @@ steplap.Plots = (() => {
       this.mark();
       this.show(this.owner.t);
     }
-    // Shows run `to` instead of `from`. Returns false if it lacks a channel; then the figure must be rebuilt.
+    // Replaces run `from` by `to` in a figure. Returns false if `to` lacks a channel; the figure must then be rebuilt.
     replaceRun(from, to) {
       if (!this.series.every((s) => s.run !== from || to.channel(s.name))) return false;
       this.runs = this.runs.map((r) => (r === from ? to : r));
@@ -142,9 +142,9 @@ steplap.Plots = (() => {
       const { values, step } = steplap.axes.ticks(low, high, most);
       return values.map((v) => ({ v, label: steplap.axes.label(v, step) }));
     }
-    // Width of the longest number along the axis.
+    // Returns the width of the labels of the vertical axis, pixels.
     labelWidth([low, high]) { return 24 + 7.4 * Math.max(3, ...this.ticker(low, high, 6).map((tick) => tick.label.length)); }
-    // Value range of a figure: that of all runs together, with nearby limits and space for the labels of extremes.
+    // Returns the value range of a figure over all runs, extended to nearby limits and by space for the labels of extremes.
     valueRange() {
       let [low, high] = this.owner.rangeOf(this.figure, this.owner.window);
       if (!(low <= high)) return [0, 1];
@@ -162,7 +162,7 @@ steplap.Plots = (() => {
       this.graph.updateOptions({ dateWindow: window, valueRange, axes: { y: { axisLabelWidth: this.labelWidth(valueRange) } } });
     }
     escaped(text) { return text.replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`); }
-    // Returns one row per time of any series; dygraphs bridges the gaps.
+    // Returns one row for each time of any series; dygraphs connects points across missing values.
     rows(factor) {
       const list = this.drawn, times = list[0].channel.times, value = (s, i) => {
         const v = s.sign * s.channel.value(i) * factor;
@@ -198,24 +198,25 @@ steplap.Plots = (() => {
       }
       const [low, high] = this.owner.rangeOf(this.figure, this.owner.full),
                   far = this.limits.filter(({ value }) => !steplap.marks.isNear(value, low, high));
-      const texts = steplap.data.unique([far.map((f) => f.text.replace('−', ''))]); // equal limits on both sides of zero are labelled once
+      // limits of equal magnitude on both sides of zero get one label
+      const texts = steplap.data.unique([far.map((f) => f.text.replace('−', ''))]);
       if (far.length) this.values.append(make('span', { class: 'key far' }, `${texts.join(', ')}: beyond this picture`));
     }
-    // Returns true if events of an element are marked: the chosen one, or those whose channels the figure shows.
+    // Returns true if events of this element are marked: the selected element, or those whose channels the figure shows.
     isMarked(element) {
       const { eventsOf } = this.owner;
       if (eventsOf === 'own') return this.series.some((s) => s.name.startsWith(`${element}.`));
       return eventsOf === 'all' || eventsOf === `of ${element}`;
     }
-    // Returns the instants marked by lines, with style and text.
+    // Returns the times marked by lines, with style and text.
     eventLines() {
       const of = (run) => run.events.filter(([, who, , , role]) => styleOf(role) && this.isMarked(who));
       const words = (run, [, who, what, text]) => `${who} ${what} at ${text}${this.runs.length > 1 ? `, ${run.name}` : ''}`;
       return this.runs.flatMap((run) => of(run).map((e) => ({ t: e[0], style: styleOf(e[4]), text: words(run, e) })));
     }
-    // Names the events whose line is near the pointer, `x` pixels from the left of the figure.
+    // Shows the names of events near the pointer, `x` pixels from the left of the figure.
     nameEvents(x) {
-      const reach = 4, mostNamed = 4; // pixels; lines of text
+      const reach = 4, mostNamed = 4; // distance in pixels; largest number of names
       const near = this.eventLines().filter(({ t }) => Math.abs(this.graph.toDomXCoord(t) - x) <= reach).map((line) => line.text);
       const more = near.length > mostNamed ? [`and ${near.length - mostNamed} more`] : [];
       this.eventName.textContent = [...near.slice(0, mostNamed), ...more].join('\n');
@@ -223,7 +224,7 @@ steplap.Plots = (() => {
       this.eventName.style.left = `${Math.min(x + 8, 0.5 * this.area.clientWidth)}px`;
     }
     drawEvents(context, rect, g) {
-      const lines = this.eventLines(), isDense = lines.length > 120; // too many lines would hide the curves
+      const lines = this.eventLines(), isDense = lines.length > 120; // many lines would hide the curves
       for (const { t, style } of lines) {
         const x = g.toDomXCoord(t);
         if (x < rect.x || x > rect.x + rect.w) continue;
@@ -252,7 +253,7 @@ steplap.Plots = (() => {
       },
         (s) => `var(--${s.colour})`);
     }
-    // Returns the displayed curves in their own units as CSV: one column per curve, one row per time of any of them.
+    // Returns the visible curves in their displayed units as CSV: one column per curve, one row per time of any of them.
     csv() {
       const [from, to] = this.graph.xAxisRange(), list = this.series.filter((s) => !s.isBound || s.sign > 0);
       const cell = (text) => (/[",\n\r]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
@@ -306,7 +307,7 @@ steplap.Plots = (() => {
         eventStyles.map((s, i) => `${s.name} (${['solid', 'dashed', 'dotted'][i]})`)
           .join(', ')}. A dot marks the worst value of a curve: the lowest of a margin, the largest of others.`;
     }
-    // Returns the minimum and maximum of any run in a figure within a time window, including extremes between samples.
+    // Returns minimum and maximum over all runs of a figure within a time window, including extremes between samples.
     rangeOf(figure, [from, to]) {
       let low = Infinity, high = -Infinity;
       const take = (v) => {
@@ -345,13 +346,13 @@ steplap.Plots = (() => {
       this.extra.push({ name: channel, title: '', channels: [channel.replace(/[*?]/g, '?')], bounds: [] });
       this.build();
     }
-    // Returns the figure that shows a channel of a run, which is created if there is none.
+    // Returns the figure that shows a channel of a run; creates it if there is none.
     figureWith(channel, run) {
       const has = (p) => p.graph && p.runs.includes(run) && p.drawn.some((s) => s.name === channel && s.run === run);
       if (!this.plots.some(has) && run.channel(channel)) this.add(channel);
       return this.plots.find(has) || this.plots.find((p) => p.series.some((s) => s.name === channel));
     }
-    // Applies the zoom and pan of one figure to all.
+    // Copies the time window of one figure to all others.
     follow(source, range) {
       if (this.isFollowing || (range[0] === this.window[0] && range[1] === this.window[1])) return;
       this.zoom([...range]);
@@ -363,7 +364,7 @@ steplap.Plots = (() => {
       this.isFollowing = false;
     }
     zoomOut() { this.zoom([...this.full]); }
-    // Draws the time window for printing; canvases would print at the resolution of the screen.
+    // Draws the figures for printing as vector graphics, because canvases would print at screen resolution.
     preparePrint() {
       for (const plot of this.plots) plot.drawForPaper();
     }

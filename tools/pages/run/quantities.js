@@ -1,5 +1,4 @@
-// Results of a run as named numbers: criteria, step-lap joints, friction, forces. Used by the tables of one run and by the comparison of
-// several.
+// Results of a run as named numbers: criteria, step-lap joints, friction, forces. Used by the tables of single runs and of comparisons.
 steplap.quantities = (() => {
   const { isKnown, full } = steplap.numbers;
   const kinds = [
@@ -11,7 +10,7 @@ steplap.quantities = (() => {
   const extreme = (run, name) => run.summary.extremes[name];
   const larger = (e) => (Math.abs(e.min) > Math.abs(e.max) ? 'min' : 'max');
 
-  // Returns a number of the summary with its error and all digits. `t` is the key of its instant.
+  // Returns a number of the summary with its error and all digits. `t`: key of the time at which it occurred.
   function number(entry, key, unit, t) {
     return {
       value: entry[key],
@@ -42,7 +41,7 @@ steplap.quantities = (() => {
       ...number({...c, error_value: c.error }, 'value', c.unit, 't')
     }));
   }
-  // Returns the channels limited by criteria and utilisations, with their limits: name -> [{ limit, isBoth }].
+  // Returns the limits of each channel from criteria and utilisations: name -> [{ limit, isBoth }].
   function limitsOf(run) {
     const found = new Map();
     const add = (name, limit, isBoth) => {
@@ -78,7 +77,7 @@ steplap.quantities = (() => {
       return { name: e.name, slips, slide: largest(run, `${e.name}.slide`), left: number(extreme(run, `${e.name}.slide`), 'final', 'm') };
     });
   }
-  // Returns the largest force or couple of every element that transmits one.
+  // Returns the largest force or couple of each element that transmits one.
   function forces(run) {
     const limits = limitsOf(run), found = [];
     for (const e of run.drawing.elements)
@@ -97,7 +96,7 @@ steplap.quantities = (() => {
       }
     return found;
   }
-  // "Forces of contacts", "Forces of contacts, springs and joints": names the kinds that occur.
+  // Returns a heading that names the kinds of elements in the list: "Forces of contacts, springs and joints".
   function headingOf(list) {
     const names = steplap.data.unique([list.map((f) => f.kind)]);
     const what = list.every((f) => f.unit === 'N m') ? 'Couples' : 'Forces';

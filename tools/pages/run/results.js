@@ -1,4 +1,4 @@
-// Tables of results: those of one run, and the comparison of several.
+// Tables of results, for one run and for comparisons of several.
 steplap.results = (() => {
   const make = steplap.make, { table, fold } = steplap.tables,
         { column, one, instant, roundingOf, roundingIn, isKnown, withUnit, percent, full } = steplap.numbers;
@@ -7,7 +7,7 @@ steplap.results = (() => {
   const cell = (text, number) => ({ text, value: number.value, full: number.full });
 
   // --- one run -------------------------------------------------------------------------------------
-  // The instant is omitted for values that are only rounding.
+  // Returns the cell with the time of a value; empty for values that are rounding errors.
   const at = (run, n) =>
     (isKnown(n.at) && !(Math.abs(n.value) <= roundingOf(run, n.unit)) ? { text: instant(n.at, run.end, n.atError), full: n.atFull } : '');
   function criteria(run) {
@@ -27,7 +27,7 @@ steplap.results = (() => {
       table(['criterion', 'asked', 'result', 'value', 'limit', 'at', ...(hasDoubt ? ['doubt'] : [])],
         hasDoubt ? rows : rows.map((r) => r.slice(0, 6)), [3, 4, 5]));
   }
-  // Returns columns of numbers with one unit each: { heads, cells[row][column] }.
+  // Returns columns of numbers, each with one unit: { heads, cells[row][column] }.
   function columnsOf(run, rows) {
     const heads = rows[0].map(([name]) => name), cells = rows.map(() => []);
     rows[0].forEach(([, { unit }], k) => {
@@ -46,7 +46,7 @@ steplap.results = (() => {
       make('p', { class: 'note' }, 'Least margin, largest pressure needed, distances slid and area lost at the end.'),
       table(['joint', 'verdict', ...heads], rows, [2, 3, 4, 5, 6, 7, 8]), ...edges(run, list), ...shared(list));
   }
-  // Joints whose limbs were drawn towards their yokes and whose sheet edges may carry load.
+  // Returns a note on joints whose limbs were drawn towards their yokes, so that sheet edges may carry load.
   function edges(run, list) {
     const bearing = list.filter((j) => j.raw.largest_edge_load !== undefined);
     if (!bearing.length) return [];
@@ -67,7 +67,7 @@ steplap.results = (() => {
       table(['joint', ...heads, 'at', 'margin', 'edges'], rows, [1, 2, 3, 4, 5])
     ];
   }
-  // Elements that carry load in parallel with a joint, whose margin refers to its own share.
+  // Returns a note on elements that carry load in parallel with a joint; the joint's margin refers to its own share.
   function shared(list) {
     return list.filter((j) => j.raw.shared_with)
       .map(
@@ -85,7 +85,7 @@ steplap.results = (() => {
       table(['contact', 'it', heads[0], 'at', heads[1]],
         list.map((f, i) => [f.name, slipText(f.slips), cells[i][0], at(run, f.slide), cells[i][1]]), [2, 3, 4]));
   }
-  const most = 60; // rows of forces; all values are among the extremes
+  const most = 60; // largest number of forces; the extremes contain all
   function forces(run) {
     const all = q.forces(run), list = all.slice(0, most);
     if (!list.length) return [];
@@ -114,7 +114,7 @@ steplap.results = (() => {
   }
 
   // --- several runs --------------------------------------------------------------------------------
-  // Rows of all runs under their common keys: { group, name, unit, isTime, isShare, entries }.
+  // Returns the rows of all runs, matched by key: { group, name, unit, isTime, isShare, entries }.
   function compared(runs) {
     const rows = new Map();
     const add = (k, group, name, n, more = {}) => {
@@ -142,15 +142,15 @@ steplap.results = (() => {
     });
     return [...rows.values()];
   }
-  // Returns the difference of two runs (second minus first) or the range of several. Two runs are compared by absolute value if the
-  // criterion limits it.
+  // Returns the difference of two runs (second minus first), or the range of several. Magnitudes are compared if the criterion limits the
+  // magnitude.
   function differenceOf({ entries, isSize }) {
     const values = entries.map((e) => (e && isKnown(e.value) && isFinite(e.value) ? (isSize ? Math.abs(e.value) : e.value) : null));
     if (values.length === 2) return values.includes(null) ? null : values[1] - values[0];
     const known = values.filter((v) => v !== null);
     return known.length > 1 ? Math.max(...known) - Math.min(...known) : null;
   }
-  // "+3 kN", or "3 kN more" if absolute values are compared.
+  // Returns "+3 kN"; for magnitudes "3 kN more".
   function changeText(text, value, { isSize }, isTwo) {
     if (!isTwo || text === '0') return text;
     if (isSize) return `${text.replace('−', '')} ${value > 0 ? 'more' : 'less'}`;

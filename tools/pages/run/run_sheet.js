@@ -1,10 +1,10 @@
-// The sheet of a run: the machine where a limit is nearest, load case, limits with sources and utilisation, events.
+// The sheet of a run: the machine when a limit is nearest, load case, limits with sources and utilisation, events.
 steplap.runSheet = (run) => {
   const make = steplap.make, { table } = steplap.tables, { one, percent, instant, isKnown } = steplap.numbers, q = steplap.quantities;
   const { part, rest, list, named, drawing, smaller } = steplap.sheet, overview = steplap.overview.of(run), { model } = run.summary;
-  const usual = 8.5; // pt
+  const usual = 8.5; // usual font size, pt
 
-  // A criterion names an element or one of its channels; it is matched with the utilisation of the same value and limit.
+  // Returns the utilisation that belongs to a criterion: the one with the same value and limit. A criterion names an element or a channel.
   const usedBy = (c) => overview.utilisations.find(
     (u) => u.is_judged && u.value === c.value && u.limit === c.limit && (u.channel === c.where || u.channel.startsWith(`${c.where}.`)));
   const words = (c) => (c.outcome === 'met' ? 'met' : c.outcome === 'open' ? 'open' : `not met: ${c.outcome}`);

@@ -1,4 +1,4 @@
-// The page of a single sheet; its contents depend on the results in the page.
+// Page with a single sheet, whose kind depends on the results in the page.
 (() => {
   const { loadCases, runs } = steplap.data, { given, statics } = steplap.assessment;
   const sheet = given || statics.length ? steplap.assessmentSheet() : loadCases ? steplap.casesSheet(loadCases) : steplap.runSheet(runs[0]);

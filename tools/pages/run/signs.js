@@ -1,7 +1,7 @@
-// Signs for events: drawn instead of typed, each with its word, so that none depends on colour alone.
+// Signs for events. They are drawn, not typed, and always accompanied by a word, so that none depends on colour alone.
 steplap.signs = (() => {
   const make = steplap.make;
-  // 16 × 16 pixels; `colour` is the style class.
+  // Drawings of 16 × 16 pixels; `colour` is the style class.
   const signs = {
     slip: { word: 'slips', colour: 'bad', d: 'M1 13H15V14.6H1ZM2 8H9V4.6L15 9L9 13V10H2Z' },
     stick: { word: 'sticks', colour: 'good', d: 'M1 13H15V14.6H1ZM4 6V4.5A4 4 0 0 1 12 4.5V6H13V12H3V6ZM6 6H10V4.5A2 2 0 0 0 6 4.5Z' },
@@ -14,7 +14,7 @@ steplap.signs = (() => {
     free: { word: 'comes free', colour: 'plain', d: 'M8 3A5 5 0 1 1 7.9 3ZM8 5A3 3 0 1 0 8.1 5Z' },
     other: { word: '', colour: 'plain', d: 'M8 4A4 4 0 1 1 7.9 4Z' },
   };
-  // Maps words of the summary's story to their sign.
+  // Sign of each word of the summary's story.
   const byWord = {
     slips: 'slip',
     slides: 'slip',
@@ -31,7 +31,7 @@ steplap.signs = (() => {
     tips: 'tip'
   };
   const ofWord = (word) => byWord[word] || 'other';
-  // Returns the sign as an element next to text.
+  // Returns the sign as an element to be placed next to text.
   const icon = (name) =>
     make('svg', { viewBox: '0 0 16 16', class: `sign ${signs[name].colour}`, 'aria-hidden': 'true', 'data-sign': name },
       make('path', { d: signs[name].d, 'fill-rule': 'evenodd' }));
@@ -42,7 +42,7 @@ steplap.signs = (() => {
     return make('g', { class: `sign ${signs[name].colour}`, 'data-sign': name },
       make('rect', { x: x - size / 2 - 1, y: y - size / 2 - 1, width: size + 2, height: size + 2, rx: 3, class: 'behind' }), path);
   }
-  // Ranks for choosing one sign that represents several, the most important first.
+  // Importance for choosing one sign that represents several, the most important first.
   const ranks = ['break', 'apart', 'tip', 'slip', 'strike', 'open', 'stick', 'close', 'free', 'other'];
   const worst = (names) => ranks.find((name) => names.includes(name)) || 'other';
   const wordOf = (name) => signs[name].word;

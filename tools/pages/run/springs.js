@@ -1,14 +1,14 @@
-// Places springs in the picture: at their ends, and next to each other. A spring that acts along an axis and whose ends coincide is drawn
-// between the outline of its body and the next outline beyond it, or an anchor.
+// Places springs in the picture. Usually a spring is drawn between its ends, next to other springs. A spring along an axis whose ends
+// coincide is drawn from the outline of its body to the next outline beyond, or to an anchor.
 (() => {
   const { add, minus, scaled, dot, length, unit, seenIn } = steplap.geometry;
   const across = (d) => [-d[1], d[0]];
   const flipped = (d) => [d[0], -d[1]];
   const path = (points) => 'M' + points.map((p) => `${p[0].toFixed(2)} ${p[1].toFixed(2)}`).join('L');
-  const least = 3, free = 4; // in units of symbols: shortest visible spring; length of a spring that ends at an anchor
+  const least = 3, free = 4; // in sizes of symbols: shortest spring; length of a spring that ends at an anchor
   const lanes = [0, 2, -2, 4, -4, 6, -6];
 
-  // Returns the distance between two nearly parallel line segments; infinite for others, which can only cross.
+  // Returns the distance between two nearly parallel line segments; infinite for other segments.
   function gapBetween([a, b], [c, d]) {
     const e = unit(minus(b, a)), f = unit(minus(d, c));
     if (Math.abs(dot(e, f)) < 0.8) return Infinity;
@@ -45,25 +45,25 @@
     isClear(a, b) {
       return this.stretches.every((other) => gapBetween([a, b], other) >= 1.7 * this.u);
     },
-    // Places a spring with a length of its own next to the springs that are already there.
+    // Places a spring of non-zero length next to the springs that were placed before.
     chooseLane(spring, a, b) {
       const n = unit(across(minus(a, b))), shifted = (k) => [a, b].map((p) => add(p, scaled(n, k * this.u)));
       spring.lane = lanes.find((k) => this.isClear(...shifted(k))) || 0;
       this.occupy(...shifted(spring.lane));
     },
-    // Places a spring whose ends coincide. If the body has wheels, the spring stands on their axle.
+    // Places a spring whose ends coincide. If the body has wheels, the spring is drawn on their axle.
     tieSpring(spring, a, d, rest) {
       if (this.tieToAxle(spring, a, d, rest)) return;
       const { scene } = this, [placeA, placeB] = spring.shape.at, { u } = this, found = [];
       const upright = Math.abs(d[1]) > Math.abs(d[0]), down = upright ? (d[1] > 0 ? 1 : -1) : d[0] > 0 ? -1 : 1;
       const bodyA = scene.body(placeA.body), bodyB = scene.body(placeB.body), n = across(d);
-      // Stops are drawn in the middle of the edge.
+      // Stops are drawn at the middle of the edge.
       const isStopped =
         scene.elements.some((e) => e.shapes.some((s) => s.type === 'rail' && s.style === 'limit' && s.at[0].body === placeA.body));
       lanes.forEach((lane, order) => {
         for (const side of [down, -down]) {
           const start = add(a, scaled(n, lane * u)), e = scaled(d, side), out = this.leaves(bodyA, rest, start, e, false);
-          if (out === null && order > 0) continue; // it would be next to its body
+          if (out === null && order > 0) continue; // the end would be next to the same body
           const from = add(start, scaled(e, out || 0)),
                 hit = placeB.body === 'ground' ? null : this.leaves(bodyB, rest, add(from, scaled(e, 0.8 * u)), e, true);
           const isMet = hit !== null && hit > 0.8 * u && hit < 30 * u, to = add(from, scaled(e, isMet ? hit + 0.8 * u : free * u));
@@ -94,8 +94,8 @@
       this.occupy(from, to);
       return true;
     },
-    // Returns the distance in pixels from a place on the screen along e to where a line finally leaves the body, or first meets it; null if
-    // never.
+    // Returns the distance in pixels from a point of the screen along e to the last intersection with the body's outline (the first one if
+    // `isFirst`); null if there is none.
     leaves(body, pose, place, e, isFirst) {
       const found = steplap.forms.crossings(body, pose(body.name), this.scene.toPlane(...place), flipped(e));
       return found.length ? (isFirst ? found[0] : found[found.length - 1]) * this.scene.scale : null;
@@ -112,7 +112,7 @@
       const shift = scaled(unit(across(minus(a, b))), (lane || 0) * this.u);
       return [add(a, shift), add(b, shift)];
     },
-    // Draws the end of a spring that meets no outline: a plate, hatched if it is fixed.
+    // Draws the end of a spring that meets no outline as a plate, which is hatched if fixed.
     anchor(spring, a, b) {
       if (!spring.tied || !spring.tied.isAnchored) return '';
       const { u } = this, e = unit(minus(b, a)), n = scaled(across(e), 0.9 * u);
@@ -125,10 +125,10 @@
                                                             : '';
       return path([add(b, n), minus(b, n)]) + strokes;
     },
-    // Points along the spring at rest, in pixels, at any zoom.
+    // Returns points along all springs in the reference pose, in pixels.
     occupied() { return this.drawnAt.map((p) => this.scene.toScreen(p)); },
 
-    // Draws the stops of a slide where they touch the outline of the body that they stop.
+    // Draws the stops of a slide where they touch the outline of the stopped body.
     stops(element, shape) {
       const { scene } = this, symbol = this.piece(element, { class: 'symbol stop' }), body = scene.body(shape.at[0].body);
       const rest = (name) => scene.reference(name);
@@ -157,7 +157,7 @@
         symbol.setAttribute('d', text || 'M0 0');
       });
     },
-    // Returns the straight lower edge (of an upright slide: the left one) under which rollers are drawn.
+    // Returns true if the lower edge of the body (the left one for a vertical slide), under which rollers are drawn, is straight.
     hasEdge(shape) {
       const { scene } = this, body = scene.body(shape.at[0].body), d = this.direction(shape, (name) => scene.reference(name)),
                     isUpright = Math.abs(d[1]) > Math.abs(d[0]);
@@ -170,7 +170,7 @@
         return height(p) < low + near && height(q) < low + near && Math.abs(way(p) - way(q)) > 0.9 * span && span > 0;
       });
     },
-    // Draws rollers under the edge of a sliding body with an outline, on a line that is hatched where it is fixed.
+    // Draws rollers under the edge of a sliding body, and the line on which they roll, hatched if fixed.
     rollers(element, shape) {
       const { scene } = this, rest = (name) => scene.reference(name), [placeA, placeB] = shape.at, body = scene.body(placeA.body);
       const line = this.piece(element, { class: 'symbol track' }),
@@ -200,8 +200,8 @@
         line.setAttribute('d', text);
       });
     },
-    // Ground edges on which wheels roll are hatched on their far side, as far as they are visible. A flat road is also drawn by its line,
-    // because its ends are not part of the machine.
+    // Draws ground edges on which wheels roll, hatched on the far side, as far as they are visible. A flat road is drawn as a line, because
+    // its ends are not part of the machine.
     roads() {
       const { scene } = this, done = new Set();
       for (const element of scene.elements)

@@ -1,27 +1,30 @@
-// From where a machine is seen, and how far its motion is magnified.
+// Chooses the reference body of a picture and the magnification of motion.
 //
-// It is seen from the ground. A vehicle that drives away is followed: its travel is left out ("alongside"). Each body's motion relative
-// to the body that carries it is magnified: what slides in a tank is not hidden by the tank's own motion, and a vehicle that pitches on
-// its springs stays on its road. Motion is not magnified where a body turns by more than a few degrees: a turn cannot be drawn larger.
+// Usually the ground is the reference. A vehicle that drives away is followed: its travel is subtracted ("alongside"). The motion of each
+// body is magnified relative to the body that carries it, so that a slide in a tank is not hidden by the tank's motion, and a vehicle that
+// pitches on its springs stays on its road. Motion is not magnified if a body turns by more than a few degrees, because a rotation cannot
+// be drawn larger.
 (() => {
   const { minus, add, scaled, dot, length, apply, relative, turn } = steplap.geometry;
   const largestTurn = (3 * Math.PI) / 180;
-  const drawnTurn = 0.1; // rad; largest rotation that is magnified, because joints would gape
-  const drawnMotion = 0.05; // of the machine's diagonal: largest magnified motion
-  const drawnSpring = 1 / 3; // of the drawn length of a spring
-  const tiedSpring = 0.036; // of the machine's size: drawn length of a spring whose ends coincide (springs.js)
-  const drawnClearance = 0.8; // of a clearance, so that no body is drawn through a wall that it does not touch
-  const most = 500; // larger factors would show the compliance of contacts instead of motion
-  const steps = 120; // times at which a run is examined
-  const alongside = '~alongside'; // the standpoint that moves along with a vehicle
-  // Kinds of shapes that hold the vehicle to the ground along its path, so that it does not drive away.
+  const drawnTurn = 0.1; // largest drawn rotation, rad; with more, joints would gape
+  const drawnMotion = 0.05; // largest drawn motion, relative to the diagonal of the machine
+  const drawnSpring = 1 / 3; // largest drawn deformation of a spring, relative to its drawn length
+  const tiedSpring = 0.036; // drawn length of a spring whose ends coincide (springs.js), relative to the size of the machine
+  // largest drawn motion relative to the clearance, so that no body is drawn through a wall that it does not touch
+  const drawnClearance = 0.8;
+  const most = 500; // largest factor; larger ones would show the compliance of contacts
+  const steps = 120; // number of times at which a run is examined
+  const alongside = '~alongside'; // name of the reference that moves along with a vehicle
+  // Elements that connect a vehicle to the ground along its path, so that it cannot drive away.
   const holding = new Set(['pin', 'weld', 'rod', 'rope', 'bushing']);
-  const rolling = new Set(['contact', 'edge_touch', 'faces', 'touch', 'friction', 'arrow']); // between ground and a vehicle without drive
+  // elements that may connect the ground with a vehicle that drives away
+  const rolling = new Set(['contact', 'edge_touch', 'faces', 'touch', 'friction', 'arrow']);
   const times = (scene) => Array.from({ length: steps + 1 }, (_, k) => (scene.run.end * k) / steps);
   const wayOf = (scene, name, t) => minus(scene.poseAt(name, t).slice(0, 2), scene.reference(name).slice(0, 2));
 
-  // Returns the vehicle that a drive translates: { name, carried, travel(t) }, or null. Bodies that it leaves behind are drawn as if they
-  // moved along, except a road on which wheels roll.
+  // Returns the vehicle that a drive translates, { name, carried, travel(t) }, or null. Bodies that stay behind are drawn as if they moved
+  // along, except a road on which wheels roll.
   function drivenBy(scene, drive, shape) {
     const name = shape.at[0].body, moving = [...scene.bodies.values()].filter((b) => b.moves && b.name !== name);
     const apart = new Map(moving.map((b) => [b.name, 0])), gone = new Map(apart);
@@ -49,7 +52,7 @@
     const isOnRoad = scene.elements.some((e) => e.shapes.some(rolls));
     return isVehicle ? { name, carried: isOnRoad ? null : carried, travel: (t) => scaled(axis, dot(axis, wayOf(scene, name, t))) } : null;
   }
-  // Returns bodies that drive away together without a drive; the ground is then drawn moving past.
+  // Returns the bodies that drive away together without a drive. The ground is then drawn as passing by.
   function rollingAway(scene) {
     const moving = [...scene.bodies.values()].filter((b) => b.moves);
     const isOnGround = (e) => e.shapes.some((s) => s.at.some((p) => scene.isHeld(p.body)) && s.at.some((p) => !scene.isHeld(p.body)));
@@ -64,7 +67,7 @@
     const largest = moving.reduce((a, b) => (b.reach > a.reach ? b : a));
     return far > scene.size && apart < 0.5 * scene.size ? { name: largest.name, carried: null, travel } : null;
   }
-  // Returns for each body the bodies to which elements connect it.
+  // Returns for each body the names of the bodies connected to it by elements.
   function neighboursOf(scene) {
     const found = new Map(['ground', ...scene.bodies.keys()].map((name) => [name, new Set()]));
     for (const e of scene.run.drawing.elements) {
@@ -81,7 +84,7 @@
   };
 
   Object.assign(steplap.Scene.prototype, {
-    // Returns { name, carried, travel } of the vehicle that drives away, or null. `carried` is null if everything visible moves relative to
+    // Returns { name, carried, travel } of the vehicle that drives away, or null. `carried` is null if all visible bodies move relative to
     // the ground.
     journey() {
       if (this.foundJourney !== undefined) return this.foundJourney;
@@ -97,7 +100,7 @@
       return this.foundJourney;
     },
     usualStandpoint() { return this.run.drawing.seen_from || (this.journey() ? alongside : 'ground'); },
-    // Standpoints offered to the reader: [name, text].
+    // Returns the references that the reader can select, as [name, text].
     standpoints() {
       const journey = this.journey(), bodies = [...this.bodies.keys()].slice(0, 40);
       return [...(journey ? [[alongside, `alongside ${journey.name}`]] : []), ...['ground', ...bodies].map((name) => [name, name])];
@@ -106,7 +109,7 @@
       if (seenFrom === alongside) return this.journey() ? `moves along with ${this.journey().name}` : '';
       return seenFrom && seenFrom !== 'ground' ? `seen from ${seenFrom}` : '';
     },
-    // Returns for each body the one that carries it: the neighbour nearest to the ground, the largest of several.
+    // Returns for each body the body that carries it: the neighbour nearest to the ground; of several, the largest.
     carriers() {
       if (this.foundCarriers) return this.foundCarriers;
       const neighbours = neighboursOf(this), level = new Map([['ground', 0]]), carriers = new Map();
@@ -123,7 +126,8 @@
       this.foundCarriers = carriers;
       return carriers;
     },
-    // A body that rolls or turns over carries nothing: its load is drawn relative to the body that carries the roller.
+    // Returns the body relative to which the motion of `name` is drawn. Bodies that roll or turn over are skipped, because their load does
+    // not turn with them.
     carrierOf(name) {
       let carrier = this.carriers().get(name) || 'ground';
       while (carrier !== 'ground' && this.largestTurnOf(carrier) > largestTurn) carrier = this.carriers().get(carrier) || 'ground';
@@ -134,7 +138,7 @@
       if (body.turned === undefined) body.turned = Math.max(...times(this).map((t) => Math.abs(body.poseAt(t)[2] - body.pose[2])));
       return body.turned;
     },
-    // Returns the pose of a body at time t in ground axes, without the travel of the followed vehicle.
+    // Returns the pose of a body at time t in ground axes, minus the travel of the followed vehicle.
     followedPose(name, t, seenFrom) {
       const pose = this.poseAt(name, t), journey = seenFrom === 'ground' ? null : this.journey();
       if (!journey || (journey.carried && !journey.carried.has(name))) return pose;
@@ -147,8 +151,8 @@
       return { rest: relative(this.reference(carrier), this.reference(name)), now: relative(followed(carrier), followed(name)) };
     },
 
-    // --- how far motion is magnified ----------------------------------------------------------------------
-    // Largest displacement of a body's points and largest rotation, relative to its carrier.
+    // --- magnification ------------------------------------------------------------------------------------
+    // Returns the largest displacement of a body's points, m, and its largest rotation, rad, relative to its carrier.
     motionOf(body, seenFrom) {
       let displacement = 0, turned = 0;
       if (body.isUnrecorded) return { displacement: Infinity, turned };
@@ -159,7 +163,7 @@
       }
       return { displacement, turned };
     },
-    // Returns the distance by which a body may move to either side before it meets its carrier.
+    // Returns the distance, m, by which a body can move to either side before it touches its carrier.
     clearanceOf(body) {
       const carrier = this.body(this.carrierOf(body.name)), rest = relative(carrier.pose, body.pose);
       let least = Infinity;
@@ -181,7 +185,8 @@
       const lengthOf = ({ at: [a, b] }) => length(minus(this.placed(a, rest), this.placed(b, rest)));
       return Math.min(Infinity, ...springs.map((s) => Math.max(lengthOf(s), tiedSpring * this.size)));
     },
-    // Returns the largest factor of 1, 2, 5, 10 … that the motion of a body permits within the bounds above; Infinity if it does not move.
+    // Returns the largest of 1, 2, 5, 10, … by which the motion of a body can be magnified within the bounds above; Infinity if it does not
+    // move.
     factorAllowed(body, seenFrom) {
       const { displacement, turned } = this.motionOf(body, seenFrom);
       if (turned > largestTurn) return 1;
@@ -190,7 +195,7 @@
       const wanted = Math.min(bound / Math.max(displacement, 1e-12), drawnTurn / Math.max(turned, 1e-12));
       return wanted > most ? Infinity : wanted >= 1 ? rounded(wanted) : 1;
     },
-    // Returns the factor of each body by name. Bodies on one carrier share the smallest factor; it is 1 next to bodies with unknown motion.
+    // Returns the factors by body name. Bodies on one carrier share the smallest factor, which is 1 if the motion of one is not recorded.
     usualFactors(seenFrom) {
       if (!this.factors) this.factors = new Map();
       if (this.factors.has(seenFrom)) return this.factors.get(seenFrom);
@@ -206,7 +211,7 @@
       return found;
     },
     isUsuallyMagnified(seenFrom) { return [...this.usualFactors(seenFrom).values()].some((f) => f > 1); },
-    // `magnification`: a number for all bodies, or 'usual'.
+    // Returns the magnification of a body. `magnification`: a number for all bodies, or 'usual'.
     factorOf(
       name, seenFrom, magnification) { return magnification === 'usual' ? this.usualFactors(seenFrom).get(name) ?? 1 : magnification; },
     // Returns the drawn poses at time t.
@@ -229,8 +234,8 @@
         return seen.get(name);
       };
     },
-    // Returns the drawn pose that a body would have if it were at its start pose on its carrier. Ground that passes by moves with the
-    // distance that the vehicle drives.
+    // Returns the drawn pose of a body if it had not moved relative to its carrier since the start. Ground that passes by moves with the
+    // distance driven.
     ghostPose(name, pose) {
       const carrier = this.carrierOf(name), rest = relative(this.reference(carrier), this.reference(name));
       const journey = this.seenFrom === 'ground' ? null : this.journey(),
@@ -239,7 +244,7 @@
       return [...apply(on, rest), on[2] + rest[2]];
     },
   });
-  // Selection fields for magnification and standpoint; `scenes` are shown together.
+  // Returns selection fields for magnification and reference; `scenes` are shown together.
   steplap.pictureChoices = (scenes, factor, from) => {
     const standpoint = scenes[0].usualStandpoint(), option = ([value, text]) => steplap.make('option', { value }, text);
     from.replaceChildren(...scenes[0].standpoints().map(option));

@@ -12,12 +12,12 @@ steplap.Symbols = (() => {
     ],
     true);
 
-  const larger = 2; // a body that is so many times larger than a text is not hidden by it
-  const near = 60; // pixels from a place to a text that leaves small parts free
-  const mostParts = 200; // bodies: more leave texts no room
+  const larger = 2; // a body this many times larger than a text is not hidden by the text
+  const near = 60; // largest distance, pixels, from an element to a text that must not cover small parts
+  const mostParts = 200; // largest number of bodies for which texts avoid small parts
   const isApart = ([x, y], [width, height], [qx, qy, w, h]) =>
     Math.abs(qy - y) >= 0.5 * (h + height) || Math.abs(qx - x) >= 0.5 * (w + width);
-  // Shifts of a text of a width from its place, pixels: above, below, beside; the nearest first.
+  // Returns the shifts of a text of this width from its position, pixels: above, below, beside; nearest first.
   steplap.waysAround = (width) => {
     const rows = Array.from({ length: 14 }, (_, k) => (k % 2 ? 1 : -1) * (16 + 18 * Math.floor(k / 2))),
           columns = [0, 0.6, -0.6, 1.2, -1.2].map((k) => k * width);
@@ -28,11 +28,11 @@ steplap.Symbols = (() => {
   class Symbols {
     constructor(scene) {
       this.scene = scene;
-      this.wanted = []; // values to be placed
+      this.wanted = []; // requested values that have no position yet
       this.shownValues = { shown: 0, all: 0 };
-      this.springs = []; // { element, shape } with the place at which it is drawn
-      this.pieces = new Map(); // drawn parts of an element, by its name
-      this.taken = []; // occupied pixels at rest
+      this.springs = []; // placed springs { element, shape }, with their positions
+      this.pieces = new Map(); // drawn parts by the name of their element
+      this.taken = []; // pixels occupied in the reference pose
       this.pins = scene.elements.flatMap((e) => e.shapes.filter((s) => s.type === 'pin' && s.at.length > 1));
       this.planes = (scene.run.drawing.planes || []).map((plane) => ({...plane, feet: [] }));
       for (const element of scene.elements)
@@ -60,7 +60,7 @@ steplap.Symbols = (() => {
       const at = shape.at.map((a) => this.screen(a, pose));
       return at.length > 1 ? at : [at[0], at[0]];
     }
-    // Returns the direction on the screen; along x if the shape has none.
+    // Returns the direction of a shape on the screen; the x axis if it has none.
     direction(shape, pose) {
       const last = shape.at[shape.at.length - 1];
       return flipped(turn(shape.direction || [1, 0], pose(last.body)[2]));
@@ -79,10 +79,10 @@ steplap.Symbols = (() => {
         for (const node of this.pieces.get(name) || [])
           if (!node.classList.contains('force')) node.classList.toggle('moved', this.scene.hasMoved(name, t));
     }
-    // Returns the length of an arrow on the screen; all forces of all scenes have one scale.
+    // Returns the length of a force arrow in pixels. All scenes have the same scale.
     arrowLength(force) { return (8 * this.u * Math.abs(force)) / (this.scene.largestForce || 1); }
-    // Draws a force whose arrow ends (or begins) at a place, with its value on demand. `where` returns { at, d, force }: the force acts at
-    // `at` along d, on the screen.
+    // Draws an arrow whose tip (or, if `isPulling`, start) is at the point of action, optionally with its value. `where` returns { at, d,
+    // force }: position and direction on the screen, and the force, N.
     force(element, shape, where, isPulling = false) {
       const channel = this.channel(element, shape);
       if (!channel) return;
@@ -103,12 +103,12 @@ steplap.Symbols = (() => {
       this.scene.textLayer.append(text);
       return text;
     }
-    // Requests a text at the tip of an arrow along d, or as near as possible. It is placed when all requests are known.
+    // Requests a text at the tip of an arrow along d, or as near as possible. All requested texts are placed together.
     showValue(text, content, at, d, weight = Infinity) {
       text.textContent = '';
       if (this.scene.withValues && content) this.wanted.push({ text, content, at, d, weight });
     }
-    // Places values, the largest first. A value without room near its place is omitted, and the picture shows how many are (legend.js).
+    // Places the requested values, the largest first. Values without room are omitted, and the legend shows their number (legend.js).
     placeValues() {
       const all = this.wanted.sort((a, b) => b.weight - a.weight);
       let shown = 0;
@@ -129,7 +129,7 @@ steplap.Symbols = (() => {
       text.setAttribute('x', x.toFixed(1));
       text.setAttribute('y', (y + 0.32 * height).toFixed(1));
     }
-    // Puts the centre of a text near a place, clear of marks, texts and small parts; omits the text if there is no such place.
+    // Centres a text near a position without covering marks, texts and small parts. Omits it if there is no such position.
     put(text, at, size, ways = steplap.waysAround(size[0])) {
       const place = this.room(at, size, ways);
       if (place) this.write(text, place);
@@ -137,7 +137,7 @@ steplap.Symbols = (() => {
     }
 
     isFree(at, size) { return this.scene.takenTexts.every((other) => isApart(at, size, other)); }
-    // A text may lie on a body that is much larger than itself.
+    // Returns true if the text covers no small part. It may cover a body that is much larger than the text.
     isClearOfParts(at, [width, height]) {
       return this.scene.partBoxes.every(
         ([x, y, w, h]) => (w > larger * width && h > larger * height) || isApart(at, [width, height], [x, y, w, h]));
@@ -153,8 +153,8 @@ steplap.Symbols = (() => {
       this.scene.takenTexts.push([...at, ...size]);
       return { at, size };
     }
-    // Returns the first shifted place inside the picture that is clear of marks and texts, if possible also of small parts; null if there
-    // is none.
+    // Returns the first of the shifted positions that is inside the picture and covers no mark or text, if possible also no small part;
+    // null if there is none.
     room(at, size, shifts) {
       const free = shifts.map((shift) => this.onPicture(add(at, shift), size)).filter((place) => this.isFree(place, size));
       const place = free.find((p) => length(minus(p, at)) < near && this.isClearOfParts(p, size)) || free[0];
@@ -162,7 +162,7 @@ steplap.Symbols = (() => {
     }
 
     // --- half-planes --------------------------------------------------------------------------------------
-    // A half-plane is drawn as far as contacts touch it, hatched on the solid side; the outline of a body replaces it.
+    // Draws a half-plane as far as contacts touch it, hatched on the solid side. Nothing is drawn if a body's outline shows it.
     halfPlane(plane) {
       const scene = this.scene;
       if (scene.body(plane.body).is_outline_given || !plane.feet.length) return;
@@ -181,7 +181,7 @@ steplap.Symbols = (() => {
       this.update((t, pose) => {
         const middle = this.screen(plane, pose), d = flipped(turn(tangent, pose(plane.body)[2])),
               down = scaled(flipped(turn(plane.normal, pose(plane.body)[2])), -1);
-        // Not beyond the picture, because a floor is long when zoomed in.
+        // limits the line to the picture, because a floor may be very long
         const centre = dot(d, minus([scene.width / 2, scene.height / 2], middle)), reach = scene.width + scene.height;
         const beyond = plane.ends ? 0 : 3 * this.u, from = Math.max(plane.range[0] * scene.scale - beyond, centre - reach),
               to = Math.min(plane.range[1] * scene.scale + beyond, centre + reach);
@@ -207,7 +207,7 @@ steplap.Symbols = (() => {
     // Draws the corners of step-lap joints, where sheets overlap.
     sheets() {
       const { scene } = this;
-      // Only strips along the mitre are drawn; whole sheets would be lines across the windows.
+      // Only strips along the mitre are drawn; whole sheets would cross the windows of the core.
       const span = (ring) => new steplap.Box().joined(ring.reduce((box, p) => box.take(p), new steplap.Box())).span;
       for (const sheet of steplap.data.corners(scene.run).filter((s) => Math.max(...span(s.limb_sheet)) < 0.5 * scene.body(s.limb).reach))
         for (const [name, owner, ring] of [['yoke', sheet.active_part, sheet.yoke], ['limb', sheet.limb, sheet.limb_sheet]]) {
@@ -218,7 +218,7 @@ steplap.Symbols = (() => {
     }
 
     // --- springs, ropes ---------------------------------------------------------------------------------------
-    // Draws a spring from b to a, at the place chosen by springs.js.
+    // Draws a spring from b to a, at the position chosen by springs.js.
     spring(element, shape) {
       const bar = this.piece(element, { class: `symbol spring ${shape.style || ''}` }), own = { element, shape };
       this.springs.push(own);
@@ -254,7 +254,7 @@ steplap.Symbols = (() => {
       for (const pulley of shape.at.slice(1, -1)) this.dot(element, pulley, 'pulley', 0.6);
     }
 
-    // Returns the points where a rope leaves two wheels; a radius is positive if counter-clockwise rotation winds the rope up
+    // Returns the points at which a rope leaves two wheels. A radius is positive if counter-clockwise rotation winds up the rope
     // (elements/machinery/wound_rope.h).
     tangent([a, b], [ra, rb]) {
       const d = scaled(flipped(minus(b, a)), 1 / this.scene.scale), square = dot(d, d), c = ra + rb,
@@ -289,8 +289,8 @@ steplap.Symbols = (() => {
         return { at: add(a, scaled(n, 0.85 * this.u)), d: n, force: channel.at(t) };
       }, true);
     }
-    // Contact between outlines: the force on a in the middle of the touching edge. Its line of action is not recorded; on an unevenly
-    // loaded face it is nearer to the end with more load.
+    // Draws a contact between outlines: the force on a, at the middle of the touching edge. The true line of action is not recorded; on an
+    // unevenly loaded face it is nearer to the end with more load.
     faces(element, shape) {
       const places = shape.at.slice(0, -1), frame = shape.at[shape.at.length - 1];
       const corners = (own, pose) => own.map((place) => this.screen(place, pose));
@@ -306,7 +306,7 @@ steplap.Symbols = (() => {
         return found ? { at: found.at, d: found.n, force: channel.at(t) } : { at: origin, d: [0, -1], force: 0 };
       }, true);
     }
-    // Contact of a circle with a circle or an edge: a dot while it is pressed, and the force on a.
+    // Draws a contact of a circle with a circle or an edge: a dot while it is closed, and the force on a.
     touching(element, shape, where) {
       const dot = this.dotOf(element, 'touch'), force = this.channel(element, shape);
       this.update((t, pose) => {
@@ -328,7 +328,7 @@ steplap.Symbols = (() => {
         return { at: add(b, scaled(away, rb * this.scene.scale)), n, ra };
       });
     }
-    // Circle on an edge: a segment, or a road of several, whose further ends follow the thickness.
+    // Draws the contact of a circle with an edge: a segment, or a road of several, whose further points follow the thickness in `sizes`.
     edge_touch(element, shape) {
       const frame = shape.at[1].body, thickness = shape.sizes[5],
             ends = steplap.endsOfEdge(shape.sizes).map((point) => ({ body: frame, point }));
@@ -347,15 +347,16 @@ steplap.Symbols = (() => {
         return { at: add(nearest, scaled(n, 0.5 * thickness * this.scene.scale)), n };
       });
     }
-    // Describes the state of friction in words, between the contacts on which it acts.
+    // Writes the state of friction, between the contacts on which it acts.
     friction(element, shape) {
       const { scene } = this, names = element.contacts || [];
       const places =
         element.contacts ? names.map((name) => scene.byName.get(name)).filter((e) => e && e.at.length).map((e) => e.at[0]) : element.at;
       const rate = scene.run.channel(`${element.name}.slip_rate`), force = this.channel(element, shape);
-      if (!places.length || !scene.run.channel(`${element.name}.mode`) || this.frictions > 30) return; // too many words
+      if (!places.length || !scene.run.channel(`${element.name}.mode`) || this.frictions > 30) return; // more texts would be illegible
       const subject =
-        element.contacts || element.shapes.some((other) => other.type === 'faces') ? places[0].body : element.name; // the moving part
+        // name of the moving part
+        element.contacts || element.shapes.some((other) => other.type === 'faces') ? places[0].body : element.name;
       const text = make('text', { class: 'state-text', 'data-element': element.name });
       scene.textLayer.append(text);
       this.update((t, pose) => {
@@ -363,9 +364,8 @@ steplap.Symbols = (() => {
         const [x, y] = scene.toScreen(scaled(sum, 1 / places.length)), m = scene.run.modeAt(element.name, t);
         const state = m === 2 ? 'slides' : 'slid';
         const arrow = m === 2 && rate ? (rate.at(t) >= 0 ? ' →' : ' ←') : '';
-        const hasMoved = m !== 2 && scene.hasMoved(element.name, t), isSaid = m === 2 || hasMoved; // sticking friction needs no word
-        const isFelt =
-          scene.withValues && force && Math.abs(force.at(t)) > 1e-6 * scene.largestForce; // smaller forces are rounding, as for arrows
+        const hasMoved = m !== 2 && scene.hasMoved(element.name, t), isSaid = m === 2 || hasMoved; // sticking friction needs no text
+        const isFelt = scene.withValues && force && Math.abs(force.at(t)) > 1e-6 * scene.largestForce; // smaller forces are rounding errors
         text.textContent = !isSaid
           ? ''
           : `${steplap.words.sentence(subject, state)}${arrow}${isFelt ? `, ${steplap.data.quantity(force.at(t), force.unit, 4)}` : ''}`;
@@ -385,7 +385,7 @@ steplap.Symbols = (() => {
         circle.setAttribute('r', size * this.u);
       });
     }
-    // A pin on a fixed body is drawn on a bearing block.
+    // Draws a pin; on a fixed body with a bearing block.
     pin(element, shape) {
       const held = shape.at.find((place) => this.scene.isHeld(place.body));
       if (held && held.body === 'ground') {
@@ -405,21 +405,21 @@ steplap.Symbols = (() => {
       this.dot(element, shape.at[0], 'pin', 0.35);
     }
     weld(element, shape) {
-      if (shape.at.every((place) => this.scene.body(place.body).is_outline_given)) return; // the outlines already show it
+      if (shape.at.every((place) => this.scene.body(place.body).is_outline_given)) return; // the outlines show the connection
       const square = this.piece(element, { class: 'symbol weld' });
       this.update((t, pose) => {
         const [x, y] = this.screen(shape.at[0], pose), h = 0.32 * this.u;
         square.setAttribute('d', `M${x - h} ${y - h}h${2 * h}v${2 * h}h${- 2 * h}Z`);
       });
     }
-    // A guide: the free line, dashed, with a block at the guided marker.
+    // Draws a guide: a dashed line along the free direction, with a block at the guided marker.
     rail(element, shape) {
       if (shape.style === 'limit' && shape.sizes) {
         this.stops(element, shape);
         return;
       }
-      if (shape.style === 'brake') return; // its words describe it
-      if (this.scene.wheelsOf(shape.at[0].body).length) return; // the wheels already show the guide
+      if (shape.style === 'brake') return; // a brake is described by a text
+      if (this.scene.wheelsOf(shape.at[0].body).length) return; // the wheels show the guide
       if (shape.style === 'skate') {
         this.blade(element, shape);
         return;
@@ -431,13 +431,13 @@ steplap.Symbols = (() => {
       const line = this.piece(element, { class: 'symbol rail' }), block = this.piece(element, { class: 'symbol block' });
       this.update((t, pose) => {
         const [a, b] = this.ends(shape, pose), d = this.direction(shape, pose), way = dot(d, minus(a, b)), reach = 4 * this.u;
-        const from = minus(a, scaled(d, way)); // start of the slide, next to b if it runs along b
+        const from = minus(a, scaled(d, way)); // start of the line; next to b if the slide runs along b
         line.setAttribute('d', path([add(from, scaled(d, Math.min(0, way) - reach)), add(from, scaled(d, Math.max(0, way) + reach))]));
         const on = a, x = scaled(d, 0.9 * this.u), y = scaled(across(d), 0.45 * this.u);
         block.setAttribute('d', path([add(add(on, x), y), add(minus(on, x), y), minus(minus(on, x), y), minus(add(on, x), y)], true));
       });
     }
-    // A skate, or a wheel seen from above: a block along its direction.
+    // Draws a skate, or a wheel seen from above: a block along its direction.
     blade(element, shape) {
       const block = this.piece(element, { class: 'symbol block' });
       this.update((t, pose) => {
@@ -451,7 +451,7 @@ steplap.Symbols = (() => {
       this.update((t, pose) => line.setAttribute('d', path(this.ends(shape, pose))));
       for (const place of shape.at) this.dot(element, place, 'pin', 0.3);
     }
-    // Symbol for kinds that define none.
+    // Draws the symbol of element kinds that define none.
     neutral(element, shape) {
       const line = this.piece(element, { class: 'symbol neutral' });
       this.update((t, pose) => {
@@ -477,15 +477,15 @@ steplap.Symbols = (() => {
           text, channel ? steplap.data.quantity(channel.at(t), channel.unit, 4) : '', add(at, [1.9 * this.u, -1.2 * this.u]), [1, 0]);
       });
     }
-    // Returns where an element that turns one body against another is drawn: at the pin between them, or, against the ground, at any pin of
-    // the body.
+    // Returns the point at which a torque between two bodies is drawn: the pin between them or, relative to the ground, any pin of the
+    // body.
     jointOf(shape) {
       const [a, b] = shape.at, holds = (pin, name) => pin.at.some((place) => place.body === name);
       const between = b && this.pins.find((pin) => holds(pin, a.body) && holds(pin, b.body));
       const found = between || (b && b.body === 'ground' ? this.pins.find((pin) => holds(pin, a.body)) : null);
       return found ? found.at[0] : a;
     }
-    // Returns the point in front of the body, at its extent along the arrow.
+    // Returns the point in front of the body along the arrow.
     frontOf(shape) {
       const { scene } = this, place = shape.at[0], body = scene.body(place.body), rest = (name) => scene.reference(name);
       if (body.isPoint) return place;
@@ -494,7 +494,7 @@ steplap.Symbols = (() => {
       const farthest = Math.max(...body.points.map(way)), front = body.points.filter((p) => way(p) > farthest - 0.02 * body.reach);
       return { body: place.body, point: scaled(front.reduce(add), 1 / front.length) };
     }
-    // A drive whose size the results do not have is drawn without one.
+    // Draws an arrow; without a value if the results do not contain it.
     arrow(element, shape) {
       const load = this.scene.loadOf(element, shape);
       if (load) this.acting(load);
@@ -570,13 +570,13 @@ steplap.Symbols = (() => {
   for (const type of ['spring', 'rope', 'contact', 'touch', 'faces', 'edge_touch', 'friction', 'pin', 'bushing', 'weld', 'rail', 'rod',
          'neutral', 'arc', 'arrow'])
     Symbols.types[type] = Symbols.prototype[type];
-  Symbols.types.joint = () => {}; // its sheets are drawn instead
+  Symbols.types.joint = () => {}; // sheets are drawn instead
 
   Object.assign(steplap.Scene.prototype, {
     buildSymbols() {
       this.takenTexts = [];
       this.partBoxes = [];
-      // Space for texts: not on names and centres of bodies or on other texts.
+      // Converts a box to its centre and size, with a margin of 4 pixels. Texts must not cover names, centres of bodies or other texts.
       const middleAndSize = ([x0, y0, x1, y1]) => [0.5 * (x0 + x1), 0.5 * (y0 + y1), x1 - x0 + 4, y1 - y0];
       const all = this.bodies.size > mostParts ? [] : [...this.bodies.values()];
       this.updaters.push((t, pose) => {

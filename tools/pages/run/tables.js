@@ -1,10 +1,10 @@
-// Tables show three to four digits; all digits are in the title and in data-value. On a narrow screen each row becomes a card (page.css)
-// whose lines are named by data-label.
+// Tables with three to four digits; all digits are in the title and in data-value. On a narrow screen each row becomes a card (page.css),
+// whose lines are labelled by data-label.
 steplap.tables = (() => {
   const make = steplap.make;
   const few = (value) => (value === null || value === undefined ? '–' : Number(value).toExponential(1).replace('-', '−'));
 
-  // A cell is a text, a node, or { text, value, full, class } for a number.
+  // Creates a cell from a text, a node, or { text, value, full, class } for a number.
   function cellOf(name, content, isNumber, label) {
     const cell = make(name, isNumber ? { class: 'number' } : {});
     if (label) cell.setAttribute('data-label', label);
@@ -16,7 +16,7 @@ steplap.tables = (() => {
     } else cell.append(content === undefined || content === null ? '' : content);
     return cell;
   }
-  // A row that consists of one text is the heading of the following rows.
+  // Creates a table. A row of a single text is the heading of the following rows.
   function table(heads, rows, numeric = []) {
     const element = make('table', { class: 'cards' }), isNumber = (i) => numeric.includes(i);
     if (heads) {
@@ -42,7 +42,7 @@ steplap.tables = (() => {
     element.append(body);
     return make('div', { class: 'scroll', tabindex: '-1' }, element);
   }
-  // A section of the page that can be opened; `isOpen`: initially open.
+  // Creates a section that the reader can open. `isOpen`: open initially.
   function fold(title, isOpen, ...content) {
     const box =
       make('details', isOpen ? { class: 'fold', open: '' } : { class: 'fold' }, make('summary', {}, make('h3', {}, title)), ...content);

@@ -1,17 +1,17 @@
-// Events on one time axis with the slider: a lane for each element that slips, opens or breaks, with its intervals and a sign at their
-// beginnings and ends. Overlapping signs are merged into one with a count.
+// Events on a time axis with the slider: one lane for each element that slips, opens or breaks, with its intervals and signs at their
+// begins and ends. Overlapping signs are merged into one with a count.
 steplap.Timeline = (() => {
   const make = steplap.make;
-  const size = 14, laneHeight = 20, thumb = 16, causeHeight = 22; // pixels
-  const mostCauses = 3; // loads with a curve
+  const size = 14, laneHeight = 20, thumb = 16, causeHeight = 22; // sizes in pixels
+  const mostCauses = 3; // largest number of loads with a curve
 
-  // Events that begin and end an interval.
+  // Pairs of events that begin and end an interval.
   const stretches = [
     { begins: ['slip'], ends: ['stick', 'free', 'apart'], class: 'slipping', word: 'slips' },
     { begins: ['open'], ends: ['close', 'strike'], class: 'open', word: 'is open' }
   ];
 
-  // Returns elements with events that have a sign: first those that slipped or broke, then the others in the story.
+  // Returns the elements whose events have a sign: those that slipped or broke first, then the others of the story.
   function lanesOf(run, most) {
     const { moved, story } = steplap.overview.of(run), lanes = new Map();
     for (const [t, who, what, text, role] of run.events) {
@@ -46,7 +46,7 @@ steplap.Timeline = (() => {
     }
     return found;
   }
-  // Groups events whose signs would touch: { x, events }.
+  // Groups events whose signs would overlap: [{ x, events }].
   function gathered(events, xOf) {
     const groups = [];
     for (const e of events) {
@@ -54,7 +54,7 @@ steplap.Timeline = (() => {
       if (last && x - last.x < (last.events.length > 1 ? size + 20 : size + 3)) last.events.push(e);
       else groups.push({ x, events: [e] });
     }
-    // A sign with a count is wider, so its neighbour may join the group.
+    // A sign with a count is wider, so it may overlap the next group.
     for (let i = 1; i < groups.length; ++i)
       if (groups[i - 1].events.length > 1 && groups[i].x - groups[i - 1].x < size + 20) {
         groups[i - 1].events.push(...groups[i].events);
@@ -64,7 +64,7 @@ steplap.Timeline = (() => {
   }
 
   return class Timeline {
-    // `end`: end of the time axis; runs may be longer. `causes`: the loads of each run (causes.js).
+    // `end`: end of the time axis, which may be before that of the runs. `causes`: loads of each run (causes.js).
     constructor(runs, end, { causes, lanes, axis, slider, onTime }) {
       Object.assign(this, { runs, end, causes, box: lanes, axisBox: axis, slider, onTime });
       this.most = runs.length > 1 ? 3 : 5;
@@ -77,7 +77,7 @@ steplap.Timeline = (() => {
     }
     xOf(t) { return this.left + ((this.width - this.left - this.right) * t) / this.end; }
     timeAt(x) { return ((x - this.left) * this.end) / (this.width - this.left - this.right); }
-    // Names are in front of their lanes; on a narrow screen above them.
+    // Reserves space for names in front of the lanes; on a narrow screen they are above the lanes.
     measure(width) {
       this.width = Math.max(240, width || this.box.clientWidth || 1260);
       this.isNarrow = this.width < 560;
@@ -95,7 +95,7 @@ steplap.Timeline = (() => {
       while (text.length > 3 && this.canvas.measureText(`${text}…`).width > room) text = text.slice(0, -1);
       return `${text}…`;
     }
-    // `width` in pixels; by default that of its container.
+    // Builds the drawing with this width in pixels, by default that of its container.
     build(width) {
       this.measure(width);
       this.box.replaceChildren();
@@ -113,7 +113,7 @@ steplap.Timeline = (() => {
       this.slider.style.marginLeft = `${this.left - thumb / 2}px`;
       this.slider.style.width = `${this.width - this.left - this.right + thumb}px`;
     }
-    // The loads: a sentence and a curve each.
+    // Draws each load as a sentence and a curve.
     drawCauses(causes) {
       const most = this.runs.length > 1 ? 1 : mostCauses, rest = causes.length - most;
       const shown = causes.slice(0, most).map(
@@ -123,7 +123,7 @@ steplap.Timeline = (() => {
           make('p', {}, causes.slice(most).map((c) => c.sentence).join(' '))));
       return shown;
     }
-    // To its own scale, about zero.
+    // Draws the curve of a load about zero, scaled to its own peak.
     causeCurve({ times, values, peak, sentence }) {
       const svg = make('svg',
         { viewBox: `0 0 ${this.width} ${causeHeight}`, width: this.width, height: causeHeight, role: 'img', 'aria-label': sentence });
@@ -138,7 +138,7 @@ steplap.Timeline = (() => {
         make('path', { class: 'cause-curve', d: `M${points.join('L')}` }));
       return svg;
     }
-    // The least and the largest value of each pixel, up to the end of the axis.
+    // Returns the smallest and largest value per pixel, up to the end of the axis.
     thinned(times, values) {
       const found = new Map();
       times.forEach((t, i) => {
@@ -181,7 +181,7 @@ steplap.Timeline = (() => {
                                    group.events.slice(0, 12).map((e) => e.text).join('\n')}${count > 12 ? '\n…' : ''}`;
       const box = make('g', { class: 'event', role: 'listitem', 'data-t': firstEvent.t, 'data-who': firstEvent.who, 'data-count': count },
         make('title', {}, text));
-      const x = Math.min(group.x, this.width - this.right - (count > 1 ? 18 : 0)); // keeps the count inside the picture
+      const x = Math.min(group.x, this.width - this.right - (count > 1 ? 18 : 0)); // keeps the count within the picture
       box.append(steplap.signs.mark(role, x, y, size));
       if (count > 1) box.append(make('text', { x: x + size / 2 + 2, y: y + 4, class: 'count' }, count > 99 ? '99+' : `×${count}`));
       box.addEventListener('click', () => this.onTime(firstEvent.t));
@@ -210,7 +210,7 @@ steplap.Timeline = (() => {
       this.slider.value = String(t);
       this.slider.setAttribute('aria-valuetext', steplap.numbers.instant(t, this.end));
     }
-    // Returns the instant of the previous or next event of all lanes; the beginning or the end if there is none.
+    // Returns the time of the previous or next event; begin or end of the axis if there is none.
     beside(t, direction) {
       const times = this.runs.flatMap((run) => run.events.filter((e) => steplap.signs.has(e[4])).map((e) => e[0])).sort((a, b) => a - b);
       const room = 1e-9 * this.end;
@@ -220,7 +220,7 @@ steplap.Timeline = (() => {
   };
 })();
 
-// Events in words, one per line; a click goes to the instant.
+// Lists the events as sentences, one per line; a click shows the instant.
 steplap.story = (() => {
   const make = steplap.make, first = 6;
   function line(entry, onTime) {

@@ -1,4 +1,4 @@
-// The verdict with its reason, and a line on how reliable it is, with a folded table behind it.
+// The verdict with its reason, and a line about the reliability of the results, with details that can be opened.
 steplap.verdict = (() => {
   const make = steplap.make, { few, table } = steplap.tables, { one, instant, full } = steplap.numbers;
   const levels = {
@@ -18,8 +18,7 @@ steplap.verdict = (() => {
     const overview = steplap.overview.of(run), badge = steplap.overview.badgeOf(run);
     const box = make('div', { class: 'card', 'data-run': run.name });
     if (!isOne) box.append(make('h2', { class: 'run-name' }, run.name));
-    const sign =
-      badge.name === 'none' ? '' : make('span', { class: `badge ${badge.name}` }, badge.word); // without criteria there is no verdict
+    const sign = badge.name === 'none' ? '' : make('span', { class: `badge ${badge.name}` }, badge.word); // no verdict without criteria
     box.append(make('p', { class: 'verdict-line' }, sign, make('span', { class: 'reason' }, overview.reason)));
     if (overview.isOld)
       box.append(make('p', { class: 'note old' },
@@ -28,7 +27,7 @@ steplap.verdict = (() => {
     return box;
   }
 
-  // --- the table that opens ------------------------------------------------------------------------
+  // --- details of the reliability -------------------------------------------------------------------
   function settingText(run) {
     const s = run.summary, isFixed = s.integrator === 'rk4' || s.integrator === 'moreau';
     return `${s.integrator}, ` +
@@ -88,7 +87,7 @@ steplap.verdict = (() => {
     const summary = isOne ? make('summary', {}, ...trustLine(runs[0])) : make('summary', {}, 'How far these can be trusted');
     document.getElementById('trust').append(summary);
   }
-  // Builds the contents of the fold, which the first picture does not need.
+  // Builds the details, which are not part of the first screen.
   function buildTrust(runs) {
     const heads = ['', ...runs.map((r) => r.name)];
     document.getElementById('trust').append(

@@ -1,4 +1,4 @@
-// Zooms and pans all pictures of the machine by wheel, drag, two fingers, keys and buttons; saves pictures and curves as files.
+// Zooming and panning of all pictures by wheel, dragging, two fingers, keys and buttons; saving of pictures and curves.
 steplap.View = class View {
   constructor(scenes, redraw) {
     Object.assign(this, { scenes, redraw, zoom: 1, shift: [0, 0] });
@@ -15,7 +15,7 @@ steplap.View = class View {
     this.redraw();
   }
   reset() { this.set(1, [0, 0]); }
-  // Zooms about the pixel (x, y), which stays in place.
+  // Zooms about the pixel (x, y), which keeps its position.
   zoomAt(scene, factor, x = scene.width / 2, y = scene.height / 2) {
     const before = scene.toPlane(x, y), zoom = Math.min(1e4, Math.max(0.2, this.zoom * factor)), k = this.zoom / zoom;
     this.set(zoom, [0, 1].map((i) => this.shift[i] + (before[i] - scene.centre[i]) * (1 - k)));
@@ -46,7 +46,7 @@ steplap.View = class View {
       if (event.pointerType === 'mouse' && event.button !== 0) return;
       touches.set(event.pointerId, place(event));
       svg.focus({ preventScroll: true });
-      // One finger scrolls the page while the whole machine is visible; two fingers, or one on an enlarged part, move the picture.
+      // One finger scrolls the page while the whole machine is visible. Two fingers, or one finger on an enlarged part, move the picture.
       if (event.pointerType !== 'touch' || touches.size > 1 || svg.classList.contains('zoomed')) svg.setPointerCapture(event.pointerId);
     });
     svg.addEventListener('pointermove', (event) => {
@@ -80,7 +80,7 @@ steplap.save = (() => {
     'fill', 'fill-opacity', 'stroke', 'stroke-width', 'stroke-dasharray', 'stroke-linecap', 'stroke-linejoin', 'stroke-opacity', 'opacity',
     'vector-effect', 'font-family', 'font-size', 'font-weight', 'text-anchor', 'dominant-baseline', 'paint-order', 'display'
   ];
-  // Offers a file as a download.
+  // Offers a file for download.
   function file(name, type, content) {
     const link = document.createElement('a'), url = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type }));
     link.href = url;
@@ -90,7 +90,7 @@ steplap.save = (() => {
     link.remove();
     setTimeout(() => URL.revokeObjectURL(url), 10000);
   }
-  // Copies a drawing of the page with the computed styles written into it, so that it can be saved alone.
+  // Returns a copy of a drawing with all computed styles, so that it can be saved alone.
   function alone(svg) {
     const copy = svg.cloneNode(true), from = [svg, ...svg.querySelectorAll('*')], to = [copy, ...copy.querySelectorAll('*')];
     from.forEach((node, i) => {
@@ -105,7 +105,7 @@ steplap.save = (() => {
     return { text: new XMLSerializer().serializeToString(copy), width, height };
   }
   const svg = (drawing, name) => file(`${name}.svg`, 'image/svg+xml', alone(drawing).text);
-  // Returns a promise of a canvas with the present drawing, fulfilled once the browser has drawn it.
+  // Returns a promise of a canvas with the drawing.
   async function raster(drawing, magnified) {
     const { text, width, height } = alone(drawing), image = new Image(), canvas = document.createElement('canvas');
     image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;
@@ -119,7 +119,7 @@ steplap.save = (() => {
     const canvas = await raster(drawing, magnified);
     canvas.toBlob((blob) => file(`${name}.png`, 'image/png', blob), 'image/png');
   }
-  // Returns buttons that save: { SVG: action, ... }.
+  // Returns buttons for saving: { SVG: action, ... }.
   function buttons(actions) {
     const box = steplap.make('span', { class: 'save' }, 'Save: ');
     for (const [label, action] of Object.entries(actions)) {
@@ -132,7 +132,7 @@ steplap.save = (() => {
   return { file, svg, png, raster, alone, buttons };
 })();
 
-// Icons are drawn instead of typed, because a font may lack the sign.
+// Returns an icon as a drawing, because a font may lack the character.
 steplap.icon = (name) => {
   const shapes = {
     play: 'M4 2L13 8L4 14Z',

@@ -1,6 +1,6 @@
-// The answer of a study as sentences. They depend on the roles of its findings, not on the kind of study.
+// Forms sentences that answer a study. They depend on the roles of its findings, not on the kind of study.
 study.answers = (() => {
-  const { data } = study, most = 4; // sentences
+  const { data } = study, most = 4; // largest number of sentences
   const minus = (text) => text.replace(/-(?=[\d.])/g, '−');
   const withUnit = (text, unit) => (unit ? `${text}\u202f${data.pretty(unit)}` : text);
   const quantity = (f) => (f.text ? withUnit(minus(f.text), f.unit) : '–');
@@ -9,7 +9,7 @@ study.answers = (() => {
   const isKnown = (f) => f.value !== null && isFinite(f.value);
   const doubt = (f) => (f.status ? ` In doubt: ${f.status}.` : '');
 
-  // Formats a percentage to two digits of the interval's width; shares below 0.001 % as numbers.
+  // Formats a probability as a percentage, to two digits of the interval's width; below 0.001 % as a number.
   function chance(f) {
     if (f.value > 0 && f.value < 1e-5) return `${quantity(f)}${between(f)}`;
     const width = f.low !== null && f.high !== null ? 100 * (f.high - f.low) : 0;
@@ -17,7 +17,7 @@ study.answers = (() => {
     const decimals = Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(width)))), text = (v) => (100 * v).toFixed(decimals);
     return `${text(f.value)}\u202f% (${text(f.low)} to ${text(f.high)}\u202f%)`;
   }
-  // Orders the results of several methods: those without remarks first, then those with an interval, then by its width.
+  // Sorts results of several methods: without remarks first, then those with an interval, then by its width.
   const rank = (f) => [f.status ? 1 : 0, f.low === null || f.high === null ? 1 : 0, f.high - f.low || 0];
   const byRank = (a, b) => {
     const [p, q] = [rank(a), rank(b)], k = p.findIndex((v, i) => v !== q[i]);
@@ -27,8 +27,8 @@ study.answers = (() => {
   const best = (list) => [...list].sort(byRank).slice(0, 1);
   const all = (list) => list;
 
-  // [role, selection of a subject's findings, sentence]. The first role that the study has gives the answer. Other probabilities than the
-  // plain one are corrections of the same method.
+  // [role, function that selects findings, function that forms a sentence]. The first role that occurs in the study determines the answer.
+  // If one method gives several probabilities, the plain one is used; the others are corrections to it.
   const sentences = [
     [
       'probability', (list) => best(list.filter((f) => !f.quantity.includes('('))),
@@ -47,7 +47,7 @@ study.answers = (() => {
     for (const f of list) groups.set(f.subject, [...(groups.get(f.subject) || []), f]);
     return [...groups.values()];
   }
-  // Names the fitted variables in one sentence.
+  // Returns a sentence with the fitted variables.
   function fitted(found) {
     const values =
       found.filter((f) => f.method === 'fit' && f.role === 'base' && isKnown(f)).map((f) => `${f.subject} ${quantity(f)}${between(f)}`);
@@ -70,7 +70,7 @@ study.answers = (() => {
     };
     return [`The border runs through ${names.map(reach).join(' and ')}.`];
   }
-  // Describes the lowest and highest value of each response.
+  // Returns sentences with the smallest and largest value of each response.
   function reached(found) {
     return bySubject(found.filter((f) => f.role === 'extreme' && isKnown(f))).filter((ends) => ends.length === 2).map(([low,
       high]) => `'${low.subject}' goes from ${quantity(low)} to ${quantity(high)}.`);

@@ -1,4 +1,4 @@
-// Charts by Plotly in one style; they shrink to the paper width when the page is printed.
+// Draws charts by Plotly in one style, with the width of the paper for printing.
 study.charts = (() => {
   const { make } = study;
   const colours = {
@@ -13,13 +13,13 @@ study.charts = (() => {
   const cycle = [colours.blue, colours.vermillion, colours.green, colours.purple, colours.orange, colours.sky, colours.grey];
   const all = [];
   const isTouched = matchMedia('(pointer: coarse), (max-width: 600px)').matches;
-  // Plotly interprets some markup in its texts, so names are escaped.
+  // Escapes text, because Plotly interprets some markup.
   const safe = (text) => String(text).replace(/&/g, '&amp;').replace(/</g, '&lt;').replace(/>/g, '&gt;');
   const axis = (title, more = {}) => ({ title: { text: safe(title), standoff: 8 }, automargin: true, exponentformat: 'power', ...more });
 
-  // Colours of axes and texts follow the page's style; curves have colours that are visible on light and dark backgrounds.
+  // Axes and texts have the colours of the page; curves have colours that are visible on light and dark backgrounds.
   const scheme = matchMedia('(prefers-color-scheme: dark)');
-  const ink = '#7d858e'; // lines and marks of traces, for light and dark backgrounds
+  const ink = '#7d858e'; // colour of lines and marks on light and dark backgrounds
   function look(layout, isPaper) {
     if (isPaper) document.documentElement.classList.add('paper');
     const style = getComputedStyle(document.documentElement), colour = (name) => style.getPropertyValue(`--${name}`).trim();
@@ -31,7 +31,7 @@ study.charts = (() => {
     return found;
   }
 
-  // Only those of Plotly's buttons that contact no server: one would upload the chart.
+  // Settings of Plotly. Buttons that contact a server are removed; one would upload the chart.
   const config = {
     responsive: true,
     displaylogo: false,
@@ -40,13 +40,13 @@ study.charts = (() => {
     modeBarButtons: [['toImage', 'zoom2d', 'pan2d', 'zoomIn2d', 'zoomOut2d', 'resetScale2d']]
   };
 
-  // Charts are drawn after everything added with them is in place, because only then the columns have their final width.
+  // charts that are drawn once the page is complete, because only then the columns have their final width
   const waiting = [];
   const draw = () => {
     for (const one of waiting.splice(0)) one();
   };
 
-  // Adds a chart with its heading at the end of `parent`. A click on a point whose customdata is a sample's place shows that sample.
+  // Adds a chart with a heading at the end of `parent`. Clicking a point with `customdata`, the index of a sample, shows this sample.
   function add(parent, { title = '', note = '', traces, layout = {}, height = 320, name = '' }) {
     const canvas = make('div', { class: 'canvas' });
     const box = make('div', { class: 'chart', 'data-chart': name || title }, ...(title ? [make('h3', {}, title)] : []), canvas,
@@ -79,7 +79,7 @@ study.charts = (() => {
     all.push({ canvas, box });
     return { canvas, box };
   }
-  // Returns the points of a band between two curves as one closed outline.
+  // Returns the outline of the band between two curves.
   function band(x, low, high, colour, more = {}) {
     return {
       x: [...x, ...[...x].reverse()],
@@ -92,13 +92,13 @@ study.charts = (() => {
       ...more
     };
   }
-  // Removes all charts of a box, so that others can replace them.
+  // Removes all charts in a box.
   function clear(box) {
     for (let i = all.length; i-- > 0;)
       if (box.contains(all[i].canvas)) Plotly.purge(all.splice(i, 1)[0].canvas);
     box.replaceChildren();
   }
-  // Fits charts to the width of the paper, dark on white, or back.
+  // Sets width and colours of all charts for printing, or resets them.
   function fit(isPaper) {
     for (const { canvas, box } of all) {
       const isWide = box.parentElement.classList.contains('one');

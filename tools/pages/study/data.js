@@ -1,4 +1,4 @@
-// The study of the page, read from its JSON; formats numbers; creates elements.
+// Reads the study from the page's JSON; formats numbers; creates elements.
 study.make = (name, attributes = {}, ...children) => {
   const element = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
@@ -24,7 +24,7 @@ study.data = (() => {
   }
   const withUnit = (name, unit) => (unit ? `${name} [${pretty(unit)}]` : name);
 
-  // A variable, response or limit state of all samples in the page. Values are in the prefix of the unit.
+  // Values of a variable, response or limit state for all samples on the page, in the unit with its prefix.
   class Column {
     constructor(entry) {
       Object.assign(this, entry);
@@ -48,7 +48,7 @@ study.data = (() => {
   const reason = new Uint32Array(bytesOf(raw.samples.reason).buffer);
   const limits = columns.filter((c) => c.role === 'limit state');
   const named = (name) => columns.find((c) => c.name === name);
-  // 2: the run failed; 1: one of these limit states is negative; 0: neither.
+  // Returns the outcome of sample i: 2 for a failed run, 1 if a limit state is negative, otherwise 0.
   const fate = (i, of = limits) => (status[i] ? 2 : of.some((c) => c.values[i] < 0) ? 1 : 0);
   const classes = raw.samples.classes, shown = numbers.length;
   function shownText() {
@@ -78,7 +78,7 @@ study.data = (() => {
   };
 })();
 
-// Cells: a text, a node, or { text, class }; `numeric` lists the columns with numbers.
+// Creates a table. A cell is a text, a node, or { text, class }. `numeric`: indices of columns with numbers.
 study.table = (heads, rows, numeric = []) => {
   const { make } = study;
   const cell = (name, content, i) => {

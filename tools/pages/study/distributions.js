@@ -1,4 +1,4 @@
-// Distributions of variables and responses: cumulative shares or counts, with confidence bands.
+// Diagrams of the distributions of variables and responses: cumulative fractions or counts, with confidence bands.
 study.distributions = (() => {
   const { make, data, charts } = study;
   const { colours, axis, band } = charts;

@@ -1,5 +1,5 @@
-// Results of the study: the answer with its status, failed runs, design points, indices, effects of omitted parts, convergence of
-// estimates, the table of all estimates.
+// Results of a study: the answer with its status, failed runs, design points, sensitivity indices, effects of omitted parts, convergence,
+// and a table of all estimates.
 study.estimates = (() => {
   const { make, table, data, charts } = study;
   const at = (id) => document.getElementById(id);
@@ -10,7 +10,7 @@ study.estimates = (() => {
   const scroll = (...content) => make('div', { class: 'scroll' }, ...content);
   const heads = ['method', 'of', 'quantity', 'value', 'interval', 'samples', ''];
   const row = (f) => [f.method, f.subject, f.quantity, { text: quantity(f), class: 'value' }, interval(f), String(f.samples), status(f)];
-  // Groups findings by subject, in their order.
+  // Groups findings by subject; the order is kept.
   function bySubject(list) {
     const groups = new Map();
     for (const f of list) groups.set(f.subject, [...(groups.get(f.subject) || []), f]);
@@ -25,7 +25,7 @@ study.estimates = (() => {
     section.append(box);
     return box;
   }
-  // Draws at most `most` charts and states how many are omitted.
+  // Draws at most `most` charts and prints how many were omitted.
   function several(section, entries, draw, most = 24) {
     const box = grid(section, entries.length === 1);
     for (const entry of entries.slice(0, most)) draw(box, entry);
@@ -34,7 +34,7 @@ study.estimates = (() => {
   }
 
   // --- the answer ----------------------------------------------------------------------------------
-  // A completed study shows its answer; others get a badge with a warning.
+  // Badge of a study that is not complete or not reliable, by its status.
   const standings = {
     done: ['', '', ''],
     'not met': [
@@ -54,7 +54,7 @@ study.estimates = (() => {
   };
 
   function main() { return data.findings.filter((f) => !f.place && study.kind.isAnswer(f)); }
-  // On narrow screens each row becomes a paragraph, so that all details of a number are visible.
+  // Converts the rows of a table to paragraphs for narrow screens, so that all details remain visible.
   function stacked(rows) {
     const element = table(heads, rows, [3, 5]);
     element.className = 'stacked';
@@ -151,7 +151,7 @@ study.estimates = (() => {
           zero = base && base.value !== null ? base.value * column.factor : 0;
     const bars = list.filter((f) => f.role === 'swing' && f.low !== null && f.high !== null),
           missing = list.filter((f) => f.role === 'swing' && (f.low === null || f.high === null));
-    // Bars of different widths: where both ends lie on one side, neither hides the other.
+    // Bars differ in width, so that a bar remains visible behind another one on the same side.
     const trace = (key, name, colour, width) => ({
       type: 'bar',
       orientation: 'h',
@@ -349,7 +349,7 @@ study.estimates = (() => {
       });
   }
 
-  // --- how estimates settled -----------------------------------------------------------------------
+  // --- convergence of estimates ---------------------------------------------------------------------
   function settled(box, title, series) {
     const values = series.flatMap((s) => s.value).filter((v) => v !== null),
           isLog = series.every((s) => s.isShare) && values.length > 0 && values.every((v) => v > 0) && Math.max(...values) < 0.5;

@@ -1,16 +1,15 @@
-// All that the page does for particular kinds of study. A kind that is not listed is shown with all its estimates and with samples in a
-// plane.
+// Properties of study kinds that affect the page. A kind that is not listed shows all its estimates, and its samples in a plane.
 study.kind = (() => {
   const { data } = study;
   const none = () => false, one = (...roles) => (f) => roles.includes(f.role);
-  // title: of the study. isAnswer: selects the estimates shown at the top. plane: drawing of the samples, '' for none. isJudged: a remark
-  // on any estimate makes it doubtful. isCounted: the treatment of failed runs is stated. beginsWithSentence: the first note is the answer
-  // as a sentence. showsLaws: the variables' distributions are shown although samples do not follow them.
+  // title: heading of the page. isAnswer: selects the estimates shown at the top. plane: diagram of the samples, '' for none. isJudged: a
+  // remark on any estimate makes it doubtful. isCounted: the treatment of failed runs is stated. beginsWithSentence: the first note is the
+  // answer as a sentence. showsLaws: distributions of variables are shown although samples do not follow them.
   const kinds = {
     sweep: { title: 'sweep', isAnswer: none, plane: 'sweep' },
     sample: { title: 'samples', isAnswer: (f) => f.role === 'probability' || f.quantity === 'mean', isCounted: true },
     reliability: { title: 'reliability', isAnswer: one('probability', 'beta'), isCounted: true, showsLaws: true },
-    // Designs that change one variable at a time show nothing in a plane.
+    // Samples of designs that change one variable at a time are not shown in a plane.
     sensitivity:
       { title: 'sensitivity', isAnswer: none, plane: ['tornado', 'elasticity'].includes(data.about.settings.method) ? '' : 'scatter' },
     critical: { title: 'critical values', isAnswer: one('critical'), plane: 'critical' },

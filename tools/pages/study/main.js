@@ -1,4 +1,4 @@
-// The page from top to bottom.
+// Builds the page of a study from top to bottom.
 (() => {
   const { make, data } = study, at = (id) => document.getElementById(id);
   const title = data.about.title || data.about.file || data.store;
@@ -29,5 +29,5 @@
   document.addEventListener('keydown', (event) => {
     if (event.key === 'Escape') at('sample').hidden = true;
   });
-  queueMicrotask(() => document.body.setAttribute('data-ready', 'true')); // after the charts
+  queueMicrotask(() => document.body.setAttribute('data-ready', 'true')); // set after the charts are drawn, for tests
 })();

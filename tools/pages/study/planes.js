@@ -1,9 +1,9 @@
-// Samples in a plane: the border of a map, the line of a critical value, curves of a sweep, or any two columns.
+// Diagrams of samples in a plane: border of a map, line of a critical value, curves of a sweep, or any two columns.
 study.planes = (() => {
   const { make, data, charts } = study;
   const { colours, cycle, axis, safe } = charts;
   const section = document.getElementById('plane');
-  const k_most = 6000; // points that a browser draws quickly
+  const k_most = 6000; // largest number of points that browsers draw quickly
   const range = (n) => Array.from({ length: n }, (_, i) => i);
   const select = (label, columns, chosen) => {
     const element = make('select', {}, ...columns.map((c) => make('option', { value: c.name }, c.head)));
@@ -16,7 +16,7 @@ study.planes = (() => {
     { name: 'run failed', marker: { size: 7, color: study.charts.ink, symbol: 'square-open' } }
   ];
 
-  // Thins out points, equally for each kind, if there are more than a browser draws well.
+  // Thins out points, each kind by the same fraction, if there are too many for a browser.
   function thinned(places) {
     const most = Math.floor(k_most / 3);
     let left = k_most - places.reduce((sum, p) => sum + Math.min(p.length, most), 0);
@@ -26,7 +26,7 @@ study.planes = (() => {
       return range(share).map((k) => p[Math.floor(k * p.length / share)]);
     });
   }
-  // Plots all samples of the page by their outcome; states how many are omitted.
+  // Plots all samples by their outcome; prints how many were omitted.
   function cloud(x, y, fate, names = looks.map((l) => l.name)) {
     const places = [[], [], []];
     let unplaced = 0;
@@ -134,7 +134,7 @@ study.planes = (() => {
   }
 
   // --- design ----------------------------------------------------------------------------------------
-  // Tried values with their margins; the background is shaded where all limits hold.
+  // Plots the values tried with their margins. Intervals in which all limits hold are shaded.
   function design() {
     const points = new Map(), ends = (role) => data.findings.filter((f) => f.role === role && f.value !== null);
     for (const f of data.findings.filter((one) => one.method === 'design' && one.place))
@@ -242,7 +242,7 @@ study.planes = (() => {
       layout: { xaxis: axis(x.head), yaxis: axis(y.head) }
     });
   }
-  // Field over a full grid of two variables.
+  // Draws a coloured field of z over a full grid of x and y.
   function field(box, [x, y], z) {
     const levels = (c) => [...new Set(c.values)].sort((a, b) => a - b), xs = levels(x), ys = levels(y);
     if (xs.length < 3 || ys.length < 3 || xs.length * ys.length !== data.shown) return;

@@ -1,4 +1,4 @@
-// The table of samples, and details of one sample with the command that replays it.
+// The table of samples, and details of one sample with the command that repeats it.
 study.samples = (() => {
   const { make, data } = study;
   const at = (id) => document.getElementById(id);
@@ -23,7 +23,7 @@ study.samples = (() => {
   async function copy(text, button, code) {
     try {
       await navigator.clipboard.writeText(text);
-    } catch (error) { // if the page may not access the clipboard, the text is selected instead
+    } catch (error) { // without access to the clipboard the text is selected
       getSelection().selectAllChildren(code);
       document.execCommand('copy');
     }
@@ -44,7 +44,7 @@ study.samples = (() => {
       make('div', { class: 'command' }, code, button)
     ];
   }
-  // `i`: place of the sample in the page.
+  // Shows the details of sample number i of the page.
   function show(i) {
     const box = at('sample'),
           roles = { variable: 'Values', response: 'Responses', border: 'Responses', 'limit state': 'Limit states', cost: 'The run' },
@@ -77,7 +77,7 @@ study.samples = (() => {
     state.chosen = i;
     for (const row of document.querySelectorAll('#samples tbody tr')) row.classList.toggle('chosen', Number(row.dataset.place) === i);
   }
-  // Returns a button that shows the sample with this number, if the page contains it.
+  // Returns a button that shows the sample with this number; its text only, if the page does not contain the sample.
   function button(number) {
     const i = data.numbers.indexOf(number);
     if (i < 0) return make('span', {}, String(number));
@@ -95,7 +95,7 @@ study.samples = (() => {
       if (wanted(i)) places.push(i);
     const column = data.columns.find((c) => `v ${c.name}` === state.key), of = column ? (i) => column.values[i] : keys[state.key],
           sign = state.isDown ? -1 : 1;
-    // Samples without value come last in both orders.
+    // samples without a value come last in both sort orders
     places.sort((a, b) => {
       const x = of(a), y = of(b), no = Number.isNaN(x) - Number.isNaN(y);
       return no || (x < y ? -sign : x > y ? sign : 0) || a - b;

@@ -26,21 +26,21 @@ __all__ = ["Assessment", "Criterion", "Diagnostic", "Error", "Event", "FileError
 
 
 def load(path: "_Path", values: "_Values" = None) -> Model:
-    """Reads a model file. `values`: laid over it, by path. Raises ModelError with all that is wrong, MissingFileError, FileError."""
+    """Reads a model file. `values` override those of the file, by path. Raises ModelError with all errors, MissingFileError, FileError."""
     return _steplap.load(path, values)
 
 
 def loads(text: str, values: "_Values" = None, path: "_Path" = "model.toml") -> Model:
     """Reads a model from a text. `values` as for `load`. Raises ModelError.
 
-    `path`: what messages call it, what paths in it are relative to and what its results are named after; nothing is read from there.
+    `path`: name for messages and results, and the file to which paths in the text are relative; it is not read.
     """
     return _steplap.loads(text, values, path)
 
 
 def build(model: abc.Mapping[str, Any], values: "_Values" = None, path: "_Path" = "model.toml") -> Model:
-    """Makes a model from dictionaries and lists, as its file would be: build({"body": [{"name": "box", "mass": "2 t", ...}]}).
+    """Makes a model from dictionaries and lists with the structure of a model file: build({"body": [{"name": "box", "mass": "2 t", ...}]}).
 
-    `values` and `path` as for `loads`; `text` of the model is the file. Raises ModelError, TypeError.
+    `values` and `path` as for `loads`. The model's `text` is the equivalent file. Raises ModelError, TypeError.
     """
     return loads(_toml_file(model), values, path)

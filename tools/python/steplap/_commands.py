@@ -1,7 +1,6 @@
-"""Studies, load cases and assessments: the installed program `steplap` runs them, its `--json` becomes data frames of pandas.
+"""Studies, load cases and assessments: runs the installed program `steplap` and converts its `--json` output to data frames of pandas.
 
-The program is a process of its own, so that Python gets the same numbers, checks and resumable stores as the command line, without a
-second binding of all of it.
+A separate process gives the same numbers, checks and resumable stores as the command line, without further bindings.
 """
 import io
 import json
@@ -20,7 +19,7 @@ from ._errors import Error, FileError, NumericalFailure, model_error
 from ._steplap import Diagnostic, Model, __version__
 from ._toml import overrides, toml_file
 
-_SECONDS_TO_STOP = 10.0  # a stopped program saves what it has; then it is ended
+_SECONDS_TO_STOP = 10.0  # time for a stopped program to save its results before it is killed, s
 
 
 def _program() -> str:
@@ -46,7 +45,7 @@ def _fail(code: int, message: str) -> None:
 
 
 def _call(arguments: abc.Sequence[str], accepted: abc.Sequence[int]) -> tuple[int, str, str]:
-    """Exit code, output and messages of the program. KeyboardInterrupt stops it, too."""
+    """Runs the program. Returns its exit code, output and messages. KeyboardInterrupt stops the program, too."""
     process = subprocess.Popen([_program(), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True)
     try:
         output, messages = process.communicate()
@@ -65,7 +64,7 @@ def _call(arguments: abc.Sequence[str], accepted: abc.Sequence[int]) -> tuple[in
 
 @contextmanager
 def _files(given: abc.Sequence[Any]) -> abc.Iterator[list[str]]:
-    """Returns paths: given models are written to temporary files."""
+    """Yields the paths of the given files and models; models are written to temporary files."""
     with tempfile.TemporaryDirectory(prefix="steplap-") as folder:
         paths = []
         for i, one in enumerate(given):
@@ -100,7 +99,7 @@ def _set(values: Any) -> list[str]:
 
 
 def frame(rows: Any) -> Any:
-    """A table of the program as a pandas.DataFrame: units of its columns are in `attrs["units"]`, in a column "unit of X" if they differ."""
+    """Converts a table of the program to a pandas.DataFrame. Units are in `attrs["units"]`; if a column has several, in a column "unit of X"."""
     import pandas
     if isinstance(rows, abc.Mapping):
         rows = [{"name": name, **(cell if isinstance(cell, abc.Mapping) else {"value": cell, "unit": ""})} for name, cell in rows.items()]
@@ -123,7 +122,7 @@ def frame(rows: Any) -> Any:
 
 
 class Result:
-    """Output of a command: `text`, `tables` (data frames by name), `data` (as in the JSON)."""
+    """Output of a command: `text` (lines outside tables), `tables` (data frames by name), `data` (the JSON)."""
 
     def __init__(self, data: abc.Mapping[str, Any]) -> None:
         self.data = dict(data)
@@ -142,9 +141,9 @@ def _checked(output: str) -> dict[str, Any]:
 
 
 def command(name: str, *files: Any, values: Any = None, **options: Any) -> list[Result]:
-    """Runs a command of the program that has --json, such as command("equilibrium", model): a result for each model, in order.
+    """Runs a command of the program that has --json, such as command("equilibrium", model). Returns one result per model, in order.
 
-    `files`: paths or models; `values`: laid over them, as for `load`; `options`: those of the command line, wrench="53 kN,0,0". Raises
+    `files`: paths or models. `values` override those of the models, as for `load`. `options`: of the command line, wrench="53 kN,0,0". Raises
     ModelError, NumericalFailure, FileError.
     """
     with _files(files) as paths:
@@ -176,9 +175,9 @@ def cases(model: Any, values: Any = None, estimate_error: bool = False) -> LoadC
 
 
 class Study:
-    """What a study found. `findings`: a row an answer, with its interval `low` to `high`; `samples`: a row a run, with its error.
+    """Results of a study. `findings`: one row per result, with its interval `low` to `high`. `samples`: one row per run, with its error.
 
-    `is_reached`: False if the wanted accuracy was not reached, or there is nothing to be found. `text`: what the program says.
+    `is_reached`: False if the required accuracy was not reached, or if there is no result. `text`: output of the program.
     """
 
     def __init__(self, text: abc.Sequence[str], findings: Any, samples: Any, is_reached: bool) -> None:
@@ -197,7 +196,7 @@ def _exported(store: str, *options: str) -> Any:
 
 
 def _units(path: str, samples: Any) -> dict[str, str]:
-    """Units of the columns of a study's samples that vary or are channels; those of expressions are not known."""
+    """Returns the units of the sample columns that are variables or channels; units of expressions are unknown."""
     import fnmatch
     import tomllib
     from ._steplap import load
@@ -217,11 +216,11 @@ def _units(path: str, samples: Any) -> dict[str, str]:
 
 
 def study(what: Any, store: Any = None, threads: int | None = None, restart: bool = False, changed: bool = False) -> Study:
-    """Runs a study: the path of its file, or a dictionary of what the file would say, whose `model` may be a Model.
+    """Runs a study. `what`: path of its file, or a dictionary with the structure of the file, whose `model` may be a Model.
 
-    `store`: file of the samples, with which a study goes on where it ended; without it nothing is kept. `threads`: default all processors.
+    `store`: file for the samples, from which an interrupted study continues; default: samples are not kept. `threads`: default all processors.
     Raises ModelError for the study or its model, FileError for a store that cannot be used, NumericalFailure for an answer that is not to
-    be trusted. Warns if the wanted accuracy was not reached, or there is nothing to be found.
+    be trusted. Warns if the required accuracy was not reached, or if there is no result.
     """
     is_written = isinstance(what, abc.Mapping)
     with _files([what["model"]] if is_written and "model" in what else []) as models, tempfile.TemporaryDirectory(prefix="steplap-") as folder:
@@ -264,9 +263,9 @@ class Assessment:
 
 
 def assess(*records: Any, models: abc.Sequence[Any], values: Any = None, output: Any = None, **options: Any) -> Assessment:
-    """From recorders' files and models (paths, or Models with a [[recorder]]) to a decision, as `steplap assess` makes it.
+    """Makes a decision from recorder files and models (paths, or Models with a [[recorder]]), like `steplap assess`.
 
-    `output`: folder of the assessment, with which it goes on and which `steplap report` prints; without it nothing is kept. `options`:
+    `output`: folder for the assessment, from which it can continue and which `steplap report` prints; default: not kept. `options`:
     those of the command line, gravity="z", cfc=60, voyage="0,10", samples=0. Raises FileError for a record or an option, ModelError,
     NumericalFailure.
     """

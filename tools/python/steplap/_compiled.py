@@ -4,7 +4,7 @@ from typing import Any
 from ._steplap import Criterion, Diagnostic, Event, Finding, Joint, Mode, Model, Run
 
 _MADE_BY_STEPLAP_ONLY: tuple[type, ...] = (Criterion, Event, Finding, Joint, Mode, Model, Run)
-_empty = Model.__new__  # of all compiled classes
+_empty = Model.__new__  # the same for all compiled classes
 
 
 def _refuse(cls: type, *args: Any, **kwargs: Any) -> Any:

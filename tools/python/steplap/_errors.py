@@ -1,4 +1,4 @@
-"""What steplap raises on purpose. The compiled module raises these classes, too."""
+"""Exceptions of steplap, which the compiled module raises, too."""
 import errno
 import os
 import re
@@ -7,13 +7,13 @@ from typing import Any
 
 
 class Error(Exception):
-    """Base of all exceptions that steplap raises on purpose."""
+    """Base class of all exceptions of steplap."""
 
     __module__ = "steplap"
 
 
 class ModelError(Error):
-    """The model cannot be used as it stands: see `diagnostics`."""
+    """The model has errors, which `diagnostics` lists."""
 
     __module__ = "steplap"
 
@@ -23,13 +23,13 @@ class ModelError(Error):
 
 
 class NumericalFailure(Error):
-    """A computation could not be finished."""
+    """A computation failed or was stopped."""
 
     __module__ = "steplap"
 
 
 class FileError(Error):
-    """A file cannot be read or written: see `path` and `line` (from 1; 0: the file as a whole)."""
+    """A file cannot be read or written. `path`, and `line` from 1; 0: the whole file."""
 
     __module__ = "steplap"
 
@@ -40,7 +40,7 @@ class FileError(Error):
 
 
 class MissingFileError(ModelError, FileError, FileNotFoundError):
-    """A model, or a file that it names, is not there: see `path` and `diagnostics`."""
+    """A model file, or a file that it names, does not exist. See `path` and `diagnostics`."""
 
     __module__ = "steplap"
     errno = errno.ENOENT  # of OSError, as `filename`
@@ -56,7 +56,7 @@ class MissingFileError(ModelError, FileError, FileNotFoundError):
 
 
 def model_error(message: str, diagnostics: abc.Sequence[Any]) -> ModelError:
-    """The exception for the errors of a model: MissingFileError if a file is missing, else ModelError."""
+    """Returns the exception for errors of a model: MissingFileError if a file is missing, otherwise ModelError."""
     for diagnostic in diagnostics:
         missing = re.match(f"cannot read .*?'(.*)': {re.escape(os.strerror(errno.ENOENT))}", diagnostic.message, re.S)
         if missing:

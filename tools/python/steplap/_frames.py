@@ -1,4 +1,4 @@
-"""Runs and samples as data frames, figures and pictures."""
+"""Conversion of runs and samples to data frames, figures and pictures."""
 import html
 import json
 from collections import abc
@@ -6,12 +6,12 @@ from typing import Any
 
 from ._steplap import Model, Run, _samples
 
-# Style that shows only the picture and the clock of a run's page.
+# Style that hides everything on a run's page except the picture and the clock.
 _PICTURE_ONLY = "<style>header, footer, #verdict, #near, #plots, #results, #sheets, #more { display: none }</style>"
 
 
 class Picture:
-    """A page of HTML that needs no other file; as the last line of a notebook's cell it is shown. `html` is its text."""
+    """A self-contained HTML page, which notebooks show as the result of a cell. `html` is its text."""
 
     def __init__(self, page: str, height: int) -> None:
         self.html = page
@@ -22,17 +22,17 @@ class Picture:
 
 
 def show(self: Run, height: int = 620) -> Picture:
-    """The machine and its motion, as on the page of the run. `height`: pixels."""
+    """Returns an animated picture of the machine, as on the page of the run. `height`: pixels."""
     return Picture(self.page().replace("</head>", _PICTURE_ONLY + "</head>", 1), height)
 
 
 def repr_html(self: Run) -> str:
-    """The page of the run inside a notebook."""
+    """Returns the page of the run for a notebook."""
     return Picture(self.page(), 900)._repr_html_()
 
 
 def summary(self: Run) -> dict[str, Any]:
-    """summary.json as a dictionary."""
+    """Returns summary.json as a dictionary."""
     found: dict[str, Any] = json.loads(self.json())
     return found
 
@@ -44,7 +44,7 @@ def drawing(self: Model) -> dict[str, Any]:
 
 
 def to_pandas(self: Run) -> Any:
-    """All samples as a pandas.DataFrame of its own, indexed by time in s; columns are channels in SI, their units in attrs["units"]."""
+    """Returns a copy of all samples as a pandas.DataFrame, indexed by time in s. Columns are channels in SI; attrs["units"] has their units."""
     import pandas
     frame = pandas.DataFrame(self.values[:, 1:], index=pandas.Index(self.t, name="t [s]"), columns=self.names[1:], copy=True)
     frame.attrs["units"] = dict(zip(self.names[1:], self.units[1:]))
@@ -52,7 +52,7 @@ def to_pandas(self: Run) -> Any:
 
 
 def plot(self: Run, *channels: str, axes: Any = None) -> Any:
-    """Channels over time, with matplotlib; returns the axes."""
+    """Plots channels over time with matplotlib. Returns the axes."""
     import matplotlib.pyplot as plt
     axes = axes if axes is not None else plt.subplots()[1]
     units = dict(zip(self.names, self.units))
@@ -64,9 +64,9 @@ def plot(self: Run, *channels: str, axes: Any = None) -> Any:
 
 
 def samples(self: Model, values: abc.Mapping[str, Any], responses: abc.Sequence[tuple[str, str]], estimate: str = "cheap", threads: int = 0) -> Any:
-    """Runs the model with many values on all processors; returns a pandas.DataFrame with a row a run.
+    """Runs the model with many values on all processors. Returns a pandas.DataFrame with one row per run.
 
-    `values`: arrays by path, SI, or a data frame with such columns; a number holds for all runs. `responses`: (channel, "low" | "high" |
+    `values`: arrays by path, SI, or a data frame with such columns; a number applies to all runs. `responses`: (channel, "low" | "high" |
     "first" | "final"). `estimate` as for `run`; `threads`: 0 all processors, the numbers are the same for any.
 
     Columns: the paths; each response, "tank.x high", with "error of tank.x high" (not-a-number: unknown); "verdict"; and "trouble": why a

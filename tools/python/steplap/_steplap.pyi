@@ -1,5 +1,5 @@
-# What the compiled module offers, for editors and type checkers; what is written in Python is annotated there. mypy's stubtest compares
-# it with the module (tests/tools/python/test_stubs.py). Docstrings stand in the module; here are types, shapes and units.
+# Types, shapes and units of the compiled module, for editors and type checkers. mypy's stubtest compares this file with the module
+# (tests/tools/python/test_stubs.py). Docstrings are in the module; functions written in Python are annotated in their source.
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal

@@ -2,7 +2,7 @@
 import json
 from typing import Any
 
-_DEEPEST = 32  # nested lists and tables; the fields of model files need four
+_DEEPEST = 32  # deepest nesting of lists and tables; model files need four levels
 
 
 def toml(value: Any, where: str, depth: int = 0) -> str:
@@ -30,7 +30,7 @@ def _is_entries(value: Any) -> bool:
 
 
 def toml_file(model: Any) -> str:
-    """The text of a model file from dictionaries and lists: {"body": [{"name": "box", "mass": "2 t"}]}. Raises TypeError."""
+    """Returns the text of a model file for dictionaries and lists: {"body": [{"name": "box", "mass": "2 t"}]}. Raises TypeError."""
     tables = {key: value for key, value in model.items() if isinstance(value, dict) or _is_entries(value)}
     lines = [f"{toml(str(key), key)} = {toml(value, key)}" for key, value in model.items() if key not in tables]
     for key, value in tables.items():
@@ -41,7 +41,7 @@ def toml_file(model: Any) -> str:
 
 
 def overrides(values: Any) -> list[str]:
-    """Returns texts "path=value" of a dictionary; a list of such texts, or None, unchanged. Raises TypeError."""
+    """Converts a dictionary to texts "path=value". Returns a list of such texts unchanged, and an empty list for None. Raises TypeError."""
     if values is None:
         return []
     if isinstance(values, str):

@@ -26,10 +26,10 @@ namespace fs = std::filesystem;
 using namespace assess;
 using Align = TextTable::Align;
 
-constexpr std::size_t k_shown_events = 8, k_shown_reasons = 6, k_shown_sentences = 2; // the screen has thirty lines
+constexpr std::size_t k_shown_events = 8, k_shown_reasons = 6, k_shown_sentences = 2; // limits that keep the output within thirty lines
 
-// Creates the output folder before hours of computation, so that an invalid folder is reported at once. Removes the folder if it remains
-// empty.
+// Creates the output folder before computations that may take hours, so that an invalid folder is reported at once. Removes the folder if
+// nothing was written to it.
 class OutputFolder {
 public:
   explicit OutputFolder(const fs::path& path) : path_(path) {
@@ -72,7 +72,7 @@ std::vector<Evidence> accepted_evidence(const AssessOptions& options) {
   return accepted;
 }
 
-// Departure and arrival of the papers are the voyage.
+// Takes departure and arrival from the shipping document as the limits of the voyage.
 void take_shipment(const std::string& file, AssessmentOptions& options) {
   options.shipment = read_shipment(file);
   const Shipment& s = options.shipment;
@@ -214,7 +214,7 @@ void print_assessment(std::ostream& out, const Assessment& a, const std::string&
     out << "\nProbability of damage in the voyage: " << percent(a.damage.value) << " (95 %: " << percent(a.damage.low) << " to "
         << percent(a.damage.high) << ", " << a.damage.runs << " samples).\n";
   for (std::size_t i = 0; i < a.hangs_on.size() && i < k_shown_sentences; ++i) out << a.hangs_on[i] << "\n";
-  if (a.decision != Decision::energise) out << coverage_text(a.records) << "\n"; // otherwise the first line contains it
+  if (a.decision != Decision::energise) out << coverage_text(a.records) << "\n"; // for "energise" the first line contains it
   for (const MissingEvidence& missing : a.missing)
     if (a.is_accepted(missing.item)) out << "Accepted (" << name_of(missing.item) << "): " << missing.reason << "\n";
   for (std::size_t i = 0; i < a.tests.size() && i < k_shown_sentences; ++i) out << (i == 0 ? "Tests: " : "  ") << a.tests[i] << "\n";

@@ -43,7 +43,7 @@ bool is_database(const std::string& file) {
   return stream.read(head, sizeof head) && std::string(head, 15) == "SQLite format 3";
 }
 
-// Reports a store that cannot be used, with the options that help.
+// Converts a store error to a message that lists the options with which the store could be used.
 FileError with_options(const StoreError& error) {
   std::string options;
   for (const StoreMode mode : error.helps()) options += mode == StoreMode::changed ? "--changed, " : "--restart, ";
@@ -169,7 +169,7 @@ has not ended is shown as far as it is. Without -o it is written beside the stor
     const std::string store = store_of(*o), page = o->output.value_or(page_of(store));
     const OutputFiles files(console, {{"-o", page}}, o->is_overwriting);
     files.write(page, page_text(store));
-    if (files.has_words()) console.out << "Written to " << page << "\n";
+    if (files.may_print()) console.out << "Written to " << page << "\n";
     return ExitCode::done;
   };
   return command;
@@ -201,7 +201,7 @@ Command export_command() {
   return command;
 }
 
-// Runs one sample with the command for models, with its values as overrides.
+// Repeats one sample by the command for models, with the sample's values as overrides.
 ExitCode replay(const Options& o, Console& console) {
   const LoadedStudy loaded = read_study(o.file);
   Store store(store_of(o));

@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
   using namespace steplap;
   std::vector<std::string> arguments(argv + 1, argv + argc);
   const study::MpiSession mpi;
-  if (asks_for_assessment(arguments)) {
+  if (is_record_assessment(arguments)) {
     const Program assessment{"steplap", "from a shock recorder's file to a decision", {assess_command(run_assessment)}};
     return code_of_output(std::cout, std::cerr, run_program(assessment, arguments, std::cout, std::cerr, isatty(STDERR_FILENO) == 1));
   }

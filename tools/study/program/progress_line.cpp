@@ -43,7 +43,7 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::operator()(const Pace& pace) {
-  constexpr double k_between = 0.2; // s
+  constexpr double k_between = 0.2; // shortest interval between updates, s
   if (!console_.is_terminal || console_.verbosity == Verbosity::quiet || pace.seconds - last_ < k_between) return;
   last_ = pace.seconds;
   is_shown_ = true;

@@ -24,7 +24,7 @@ std::string interval_text(const Finding& f) {
   return "[" + digits(f.low) + ", " + digits(f.high) + "]";
 }
 
-// Groups reasons that differ only in numbers: shows the first one and their count.
+// Prints the reasons of failed runs with their counts. Reasons that differ in numbers only are counted together.
 void show_reasons(Store& store, std::ostream& out) {
   constexpr std::size_t k_most = 20;
   struct Group {
