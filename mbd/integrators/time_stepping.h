@@ -51,8 +51,12 @@ public:
   /// NumericalFailure if a part of the step is impossible; `state` is then that before this part.
   void step(Dynamics& dynamics, State& state, double t1, double tolerance, const PartObserver& observe = {});
 
-  /// Stops time at `t` for loads, drives and clamping pressures in all following steps (settling.h).
-  void hold_time(double t) { held_time_ = t; }
+  /// Stops time at `t` for loads, drives and clamping pressures in all following steps (settling.h). `keeps_sliding`: what slid in the last
+  /// step keeps its kinetic coefficient until it stops, as in a run; otherwise each step starts with the static one.
+  void hold_time(double t, bool keeps_sliding) {
+    held_time_ = t;
+    keeps_sliding_ = keeps_sliding;
+  }
   /// Returns the largest residuals before projection in the last step.
   [[nodiscard]] const Residual& residual() const { return residual_; }
   /// Returns the number of additional parts by halving, in all steps so far.
@@ -169,6 +173,7 @@ private:
   std::vector<double> rate_;     ///< per row: rate at the end without friction
   std::vector<double> wrench_, before_,
       last_;                                                    ///< per row: now, before the last repetition, before the last sweep
+  bool keeps_sliding_ = true;                                   ///< kinetic coefficients last from step to step
   bool is_coupled_ = false;                                     ///< bounds are functions of the wrenches
   std::vector<double> bound_at_, bound_by_;                     ///< per row: wrench at the linearisation; rows × rows: ∂bound/∂wrench
   std::vector<char> is_held_;                                   ///< per row: solved together with others by hold_rows()

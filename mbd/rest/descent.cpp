@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace steplap {
 
@@ -24,8 +23,6 @@ constexpr double k_nearly_balanced = 1e-8;
 constexpr double k_nudge = 1e-3; // displacement out of an unstable equilibrium: share of the size of the model, rad
 // Share of the work along the tangent at the start; a step with more opposing work at its end has gone too far.
 constexpr double k_turned_against = 0.5;
-constexpr double k_far = 1e4; // in sizes of the model; beyond it a body counts as moving without end
-constexpr double k_many_turns = 40.0 * std::numbers::pi;
 constexpr int k_most_measurements = 1000; // gap measurements along one step
 constexpr int k_most_halved_measurements = 40;
 constexpr double k_touch = 64.0; // roundings of the largest coordinate by which a landing body penetrates
@@ -316,6 +313,7 @@ void Descent::follow_friction(const std::vector<double>& from) {
     if (friction.phase == FrictionPhase::apart) continue;
     const FrictionElement& element = *system_.frictions[f].friction;
     const FrictionPhase before = friction.phase;
+    if (keeps_directions_ && hold_[f] == Hold::slides) continue; // even if it has no load on the way
     if (!element.is_loaded(statics_.evaluation(), friction)) {
       friction.phase = FrictionPhase::free;
       hold_[f] = Hold::none;
@@ -370,8 +368,8 @@ bool Descent::has_run_away() {
   bool is_far = false;
   for (int k = 0; k < n_; ++k) {
     const double way = state_.q[k + 3] - start_[k + 3];
-    is_far = is_far || !(std::abs(way) < (k % 3 < 2 ? k_far * length_ : k_many_turns));
-    moved[k] = k % 3 < 2 ? way / (k_far * length_) : way / k_many_turns;
+    is_far = is_far || !(std::abs(way) < (k % 3 < 2 ? far_ * length_ : many_turns_));
+    moved[k] = k % 3 < 2 ? way / (far_ * length_) : way / many_turns_;
   }
   if (!is_far) return false;
   runaway_ = largest_part(moved);
