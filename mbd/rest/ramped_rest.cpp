@@ -32,6 +32,8 @@ public:
 
   // Locates each change of modes by bisection: an increment that contains one is halved, and accepted only if it is the shortest.
   RampedRest run() {
+    load_to(s_);
+    questions_.on_rest(now_, s_);
     double step = ramp_.first, change = k_none; // the next change of modes is known to come before this share of the ramp
     while (s_ < 1.0) {
       const double end = s_ + step > 1.0 - k_rounding ? 1.0 : s_ + step;

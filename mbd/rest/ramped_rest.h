@@ -44,7 +44,8 @@ struct GravityRamp {
 struct RampQuestions {
   /// Returns the forces by which increments are compared; each list has its own unit.
   std::function<std::vector<std::vector<double>>(const RampedRest& rest)> forces;
-  /// Called for each equilibrium of the path, including the last one; `share` of the ramp lies before it.
+  /// Called for each equilibrium of the path, from the start to the last one; `share` of the ramp lies before it. While modes stay,
+  /// utilisation of friction is convex in the load, so its largest values are among these.
   std::function<void(const RampedRest& rest, double share)> on_rest;
   /// Called for each jump: the friction element that has passed a rest, and the share of the ramp at its end.
   std::function<void(int friction, double share)> on_jump;

@@ -249,7 +249,11 @@ Probe StaticMachine::worked_loose(const Vec2& pull) {
   RampedRest loose = *at_rest_.rest;
   for (std::size_t w = 0; w < watches_.size(); ++w)
     if (watches_[w].kind == LimitKind::slides) loose.state.friction[static_cast<std::size_t>(friction_[w])].phase = FrictionPhase::apart;
-  return in_two_divisions([&](double first) { return probe(loose, Vec2::Zero(), pull, first); });
+  Probe found = in_two_divisions([&](double first) { return probe(loose, Vec2::Zero(), pull, first); });
+  if (!found.rest) return found;
+  found.low = found.high = found.values; // the growing pull is only the way of the search: without it the loose machine may have no rest
+  found.left = left_of(found);
+  return found;
 }
 
 double StaticMachine::value_in(const std::vector<double>& values, const std::string& channel) const {

@@ -86,7 +86,7 @@ public:
   /// Takes the pull of `before` back to zero, then increases `pull` from there; extremes are those of the second part.
   [[nodiscard]] Probe loaded_again(const Probe& before, const Vec2& pull);
   /// Finds the equilibrium if friction along lines and about pins carries nothing, as after long vibration. Friction of joints in the plane
-  /// holds.
+  /// holds. The extremes are the values at the end.
   [[nodiscard]] Probe worked_loose(const Vec2& pull);
   /// Returns the value of a channel, or its extreme on the path; NaN if there is none of that name.
   [[nodiscard]] double value(const Probe& probe, const std::string& channel) const { return value_in(probe.values, channel); }
