@@ -33,7 +33,8 @@ constexpr int k_most_dense = 90; // coordinates; with more, sparse algebra is fa
 constexpr int k_most_sparse_projections = 12;
 constexpr double k_slow = 0.5;
 
-int most_iterations(int n) { return n <= 1000 ? 3000 : 1000; }
+constexpr int k_most_iterations = 3000, k_most_iterations_large = 1000; // with more than 1000 coordinates
+constexpr int k_most_iterations_near = 200; // after a small change of the loads; rests near by are found within 35
 
 } // namespace
 
@@ -48,10 +49,17 @@ Descent::Descent(const System& system, State& state, RestAlgebra algebra)
   measure_scene();
   is_sparse_ = algebra == RestAlgebra::sparse || (algebra == RestAlgebra::by_size && n_ > k_most_dense);
   const Landscape::StepProblem scene{system_, statics_, scale_, mass_, length_};
+  most_iterations_ = n_ <= 1000 ? k_most_iterations : k_most_iterations_large;
   landscape_ = is_sparse_ ? sparse_landscape(scene) : dense_landscape(scene);
   clearance_ = std::make_unique<Clearance>(system_, k_touch * k_epsilon * reach_);
   radius_ = k_first_radius * length_;
   turn_ = k_first_turn;
+}
+
+void Descent::follow_increment(double reach) {
+  far_ = many_turns_ = reach;
+  keeps_directions_ = true;
+  most_iterations_ = k_most_iterations_near;
 }
 
 void Descent::measure_scene() {
@@ -448,7 +456,7 @@ DescentEnd Descent::run() {
   linearise();
   if (!project()) state_.q = given;
   int failures = 0;
-  for (iterations_ = 0; iterations_ < most_iterations(n_); ++iterations_) {
+  for (iterations_ = 0; iterations_ < most_iterations_; ++iterations_) {
     stop_if_asked("in the search for rest");
     linearise();
     if (iterations_ == 0) yielding_at_start_ = landscape_->count_yielding();

@@ -32,11 +32,8 @@ public:
 
   DescentEnd run();
   /// For a small change of the loads: a body that moves further than `reach`, in sizes of the model and rad, counts as moving without end, and
-  /// friction that slides keeps its direction, whatever the search passes through.
-  void follow_increment(double reach) {
-    far_ = many_turns_ = reach;
-    keeps_directions_ = true;
-  }
+  /// friction that slides keeps its direction, whatever the search passes through. The search ends after fewer iterations.
+  void follow_increment(double reach);
 
   [[nodiscard]] int iterations() const { return iterations_; }
   [[nodiscard]] double length() const { return length_; } ///< size of the model, m
@@ -99,7 +96,8 @@ private:
   std::vector<double> start_;
   double far_ = 1e4;                            ///< sizes of the model; beyond it a body counts as moving without end
   double many_turns_ = 40.0 * std::numbers::pi; ///< the same for rotations, rad
-  bool keeps_directions_ = false;               ///< of sliding friction
+  int most_iterations_ = 0;
+  bool keeps_directions_ = false; ///< of sliding friction
   double residual_ = 0.0;
   std::vector<Hold> hold_;     ///< per friction element
   std::vector<char> left_out_; ///< per friction row: dependent on other sticking rows and left out
