@@ -233,6 +233,10 @@ Assessment assess(const std::vector<std::string>& records, const std::vector<std
   sample(options, a);
   find_undecided(options, a);
   decide(a);
+  if (!options.second_records.empty()) {
+    a.recorders = {findings_of(a), assess_second(options.second_records, models, options)};
+    decide(a);
+  }
   find_what_it_hangs_on(options, a);
   assume(a);
   return a;

@@ -5,6 +5,7 @@
 #include "tools/assess/coverage.h"
 #include "tools/assess/passage.h"
 #include "tools/assess/samples.h"
+#include "tools/assess/second_recorder.h"
 #include "transformer/decision/criteria.h"
 #include "transformer/decision/shipment.h"
 
@@ -18,10 +19,11 @@ namespace steplap::assess {
 /// Options of an assessment.
 struct AssessmentOptions {
   EventReading reading;
-  std::vector<std::string> overrides;     ///< "path=value", applied to every model
-  std::vector<Evidence> accepted;         ///< missing evidence that the user accepts
-  Shipment shipment;                      ///< papers, for the sheet that is signed
-  std::optional<Voyage> voyage;           ///< begin and end of the transport
+  std::vector<std::string> overrides;      ///< "path=value", applied to every model
+  std::vector<Evidence> accepted;          ///< missing evidence that the user accepts
+  std::vector<std::string> second_records; ///< files of a second recorder on the same machine; empty: there was one only
+  Shipment shipment;                       ///< papers, for the sheet that is signed
+  std::optional<Voyage> voyage;            ///< begin and end of the transport
   double budget = 60.0;                   ///< s of computing time per started day of record that the search for a lower event threshold may
                                           ///< use
   std::string criteria = "acceptance-3g"; ///< file name or preset
@@ -69,6 +71,7 @@ struct Assessment {
   std::vector<std::string> tests;       ///< those that would show the damage, then the usual ones
   std::vector<MissingEvidence> missing; ///< of single records and of all records together
   std::vector<Evidence> accepted;
+  std::vector<RecorderFindings> recorders; ///< of the first and the second recorder, each on its own; empty if there was one only
   std::optional<VoyageSummary> by_samples; ///< result with nominal values computed by VoyageRunner, if it was run
   int halvings = 0;                        ///< number of halvings of the event threshold until the decision stayed the same
 
