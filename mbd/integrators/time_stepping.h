@@ -51,8 +51,12 @@ public:
   /// Throws NumericalFailure if a part of the step cannot be made; `state` is then that before this part.
   void step(Dynamics& dynamics, State& state, double t1, double tolerance, const PartObserver& observe = {});
 
-  /// Evaluates loads, drives and clamping pressures at the fixed time `t`, s, in all following steps (settling.h).
-  void hold_time(double t) { held_time_ = t; }
+  /// Stops time at `t` for loads, drives and clamping pressures in all following steps (settling.h). `keeps_sliding`: what slid in the last
+  /// step keeps its kinetic coefficient until it stops, as in a run; otherwise each step starts with the static one.
+  void hold_time(double t, bool keeps_sliding) {
+    held_time_ = t;
+    keeps_sliding_ = keeps_sliding;
+  }
   /// Returns the largest constraint residuals before projection in the last step.
   [[nodiscard]] const Residual& residual() const { return residual_; }
   /// Returns the number of parts added by halving, in all steps so far.
@@ -170,6 +174,7 @@ private:
   std::vector<double> rate_;     ///< per row: rate at the end of the step without friction, m/s or rad/s
   std::vector<double> wrench_, before_,
       last_; ///< per row, N or N m: present value; value before the last pass of settle_forces(); value before the last sweep
+  bool keeps_sliding_ = true;               ///< kinetic coefficients last from step to step
   bool is_coupled_ = false;                 ///< bounds are linear functions of the wrenches (couple_bounds())
   std::vector<double> bound_at_, bound_by_; ///< per row: wrench at which bounds were linearised; rows × rows: ∂bound/∂wrench
   std::vector<char> is_held_;               ///< per row: solved simultaneously by hold_rows()

@@ -42,8 +42,7 @@ bool has_one_set(const BoundedFriction& element, const Evaluation& e, const Fric
 
 } // namespace
 
-// With fixed time (hold_time()) every step starts at rest, whatever the phase at the end of the last step.
-bool TimeStepping::slid_before(int f) const { return start_.friction[f].phase == FrictionPhase::slip && std::isnan(held_time_); }
+bool TimeStepping::slid_before(int f) const { return keeps_sliding_ && start_.friction[f].phase == FrictionPhase::slip; }
 
 // `keeps_kinetic`: continues with the coefficients of the last call; elements then only change to kinetic.
 TimeStepping::Trouble TimeStepping::balance_friction(Dynamics& dynamics, bool keeps_kinetic) {

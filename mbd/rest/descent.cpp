@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace steplap {
 
@@ -24,8 +23,6 @@ constexpr double k_nearly_balanced = 1e-8;
 constexpr double k_nudge = 1e-3; // displacement out of an unstable equilibrium: fraction of the size of the model, rad
 // A step is too long if the forces at its end oppose it by more than this fraction of their drive at its start.
 constexpr double k_turned_against = 0.5;
-constexpr double k_far = 1e4; // in sizes of the model; beyond it a body counts as moving without end
-constexpr double k_many_turns = 40.0 * std::numbers::pi;
 constexpr int k_most_measurements = 1000; // gap measurements along one step
 constexpr int k_most_halved_measurements = 40;
 constexpr double k_touch = 64.0; // depth to which a landing body penetrates, in rounding errors of the largest coordinate
@@ -36,7 +33,8 @@ constexpr int k_most_dense = 90; // number of coordinates above which sparse alg
 constexpr int k_most_sparse_projections = 12;
 constexpr double k_slow = 0.5;
 
-int most_iterations(int n) { return n <= 1000 ? 3000 : 1000; }
+constexpr int k_most_iterations = 3000, k_most_iterations_large = 1000; // with more than 1000 coordinates
+constexpr int k_most_iterations_near = 200; // after a small change of the loads; rests near by are found within 35
 
 } // namespace
 
@@ -51,10 +49,17 @@ Descent::Descent(const System& system, State& state, RestAlgebra algebra)
   measure_scene();
   is_sparse_ = algebra == RestAlgebra::sparse || (algebra == RestAlgebra::by_size && n_ > k_most_dense);
   const Landscape::StepProblem scene{system_, statics_, scale_, mass_, length_};
+  most_iterations_ = n_ <= 1000 ? k_most_iterations : k_most_iterations_large;
   landscape_ = is_sparse_ ? sparse_landscape(scene) : dense_landscape(scene);
   clearance_ = std::make_unique<Clearance>(system_, k_touch * k_epsilon * reach_);
   radius_ = k_first_radius * length_;
   turn_ = k_first_turn;
+}
+
+void Descent::follow_increment(double reach) {
+  far_ = many_turns_ = reach;
+  keeps_directions_ = true;
+  most_iterations_ = k_most_iterations_near;
 }
 
 void Descent::measure_scene() {
@@ -319,6 +324,7 @@ void Descent::follow_friction(const std::vector<double>& from) {
     if (friction.phase == FrictionPhase::apart) continue;
     const FrictionElement& element = *system_.frictions[f].friction;
     const FrictionPhase before = friction.phase;
+    if (keeps_directions_ && hold_[f] == Hold::slides) continue; // even if it has no load on the way
     if (!element.is_loaded(statics_.evaluation(), friction)) {
       friction.phase = FrictionPhase::free;
       hold_[f] = Hold::none;
@@ -373,8 +379,8 @@ bool Descent::has_run_away() {
   bool is_far = false;
   for (int k = 0; k < n_; ++k) {
     const double way = state_.q[k + 3] - start_[k + 3];
-    is_far = is_far || !(std::abs(way) < (k % 3 < 2 ? k_far * length_ : k_many_turns));
-    moved[k] = k % 3 < 2 ? way / (k_far * length_) : way / k_many_turns;
+    is_far = is_far || !(std::abs(way) < (k % 3 < 2 ? far_ * length_ : many_turns_));
+    moved[k] = k % 3 < 2 ? way / (far_ * length_) : way / many_turns_;
   }
   if (!is_far) return false;
   runaway_ = largest_part(moved);
@@ -453,7 +459,7 @@ DescentEnd Descent::run() {
   linearise();
   if (!project()) state_.q = given;
   int failures = 0;
-  for (iterations_ = 0; iterations_ < most_iterations(n_); ++iterations_) {
+  for (iterations_ = 0; iterations_ < most_iterations_; ++iterations_) {
     stop_if_asked("in the search for rest");
     linearise();
     if (iterations_ == 0) yielding_at_start_ = landscape_->count_yielding();

@@ -15,6 +15,8 @@
 #include "mbd/rest/clearance.h"
 #include "mbd/rest/landscape.h"
 
+#include <numbers>
+
 namespace steplap {
 
 enum class DescentEnd {
@@ -30,6 +32,9 @@ public:
   Descent(const System& system, State& state, RestAlgebra algebra = RestAlgebra::by_size);
 
   DescentEnd run();
+  /// For a small change of the loads: a body that moves further than `reach`, in sizes of the model and rad, counts as moving without end, and
+  /// friction that slides keeps its direction, whatever the search passes through. The search ends after fewer iterations.
+  void follow_increment(double reach);
 
   [[nodiscard]] int iterations() const { return iterations_; }
   [[nodiscard]] double length() const { return length_; } ///< size of the model, m
@@ -90,6 +95,10 @@ private:
   std::unique_ptr<Landscape> landscape_;
   std::unique_ptr<Clearance> clearance_;
   std::vector<double> start_;
+  double far_ = 1e4;                            ///< sizes of the model; beyond it a body counts as moving without end
+  double many_turns_ = 40.0 * std::numbers::pi; ///< the same for rotations, rad
+  int most_iterations_ = 0;
+  bool keeps_directions_ = false; ///< of sliding friction
   double residual_ = 0.0;
   std::vector<Hold> hold_;     ///< per friction element
   std::vector<char> left_out_; ///< for each friction row: left out, since it depends on other sticking rows

@@ -1,10 +1,12 @@
 #include "mbd/rest/equilibrium.h"
 
+#include "mbd/base/stop.h"
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/events/blow.h"
 #include "mbd/rest/admissible_rest.h"
 #include "mbd/rest/indifference.h"
 #include "mbd/rest/ramped_rest.h"
+#include "mbd/rest/rest_increment.h"
 #include "mbd/rest/settling.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
@@ -34,6 +36,14 @@ constexpr double k_tipped = 0.75;  // rad of rotation from which a body counts a
 constexpr int k_most_shared = 150; // coordinates of the largest model for which all admissible friction forces are searched
 // Fraction of the model's size. If contacts slid further, held by friction alone, the machine did not stand.
 constexpr double k_stands = 1e-2;
+constexpr double k_slid = 1e-9; // share of the size of the model; rows of sticking friction are met to 1e-12 m
+constexpr double k_at_bound =
+    1.0 - 1e-4; // share of its bound from which friction that has slid slides on; five times less than forces are asked for
+constexpr double k_most_moved = 0.1;          // sizes of the model, rad: a body that moves further in one increment has left its place
+constexpr double k_anywhere = 1e4;            // sizes of the model
+constexpr double k_far_from_bound = 0.99;     // utilisation up to which friction does not slide in the shortest increment
+constexpr int k_most_sets = 16;               // of sliding friction, tried for one increment
+constexpr double k_balanced_use = 1.0 + 1e-6; // utilisation of friction that has just slid; time steps know forces to 1e-6
 
 std::string rounded(double value) {
   char text[40];
@@ -69,12 +79,10 @@ std::string unstable_text(const System& system, const MotionPart& nudge) {
   return "a pose on the way balances, but not stably: a nudge of " + part_text(system, nudge) + " leaves it";
 }
 
-enum class LoadHistory { any, ramped };
-
 class RestSearch {
 public:
-  RestSearch(const System& system, const State& start, RestAlgebra algebra, LoadHistory history = LoadHistory::any)
-      : system_(system), algebra_(algebra), history_(history), start_(start), state_(start) {
+  RestSearch(const System& system, const State& start, RestAlgebra algebra)
+      : system_(system), algebra_(algebra), start_(start), state_(start) {
     std::fill(state_.v.begin(), state_.v.end(), 0.0);
     start_drives(system_, state_);
     for (FrictionState& friction : state_.friction)
@@ -87,12 +95,233 @@ public:
     try {
       return search();
     } catch (const ElementFailure& none) {
-      if (history_ == LoadHistory::ramped || (system_.units.empty() && system_.frictions.empty())) throw;
+      if (system_.units.empty() && system_.frictions.empty()) throw;
       return settled(none);
     }
   }
 
+  // Returns the rest under loads that differ a little from those of `before`: with a consistent set of sliding friction, or else where the
+  // machine creeps to.
+  RampedRest run_increment(const RampedRest& before, bool may_creep) {
+    if (system_.body_count() <= 1) return {at_rest(), {}};
+    length_ = scale_of(system_, start_).length;
+    if (!find_sliding_set(before)) {
+      if (!may_creep) throw RestNotFound("no static equilibrium found with a consistent set of sliding friction", {});
+      creep(before.sliding);
+      hold_where_it_is();
+      if (balance(k_most_moved) != DescentEnd::rest) throw RestNotFound("no static equilibrium found where the machine creeps to", {});
+    }
+    std::vector<int> sliding = note_slides();
+    check_increment();
+    return {at_rest(), std::move(sliding)};
+  }
+
+  // Returns the rest with all friction sticking; nothing if friction slides, or if it is not known. Throws if the machine leaves its place.
+  std::optional<Equilibrium> run_still() {
+    const DescentEnd end = balance(k_anywhere);
+    if (end == DescentEnd::no_way) return {};
+    note_tipping();
+    if (result_.turned != 0.0) away_ = {result_.turned_body, 2, result_.turned < 0.0 ? -1.0 : 1.0};
+    if (end == DescentEnd::runs_away || !result_.left.empty() || result_.turned != 0.0) leave_place(away_);
+    if (!overloads_.empty() || has_slid_beside(start_)) return {};
+    return at_rest();
+  }
+
 private:
+  // Balances forces with a set of friction sliding at its bound, first that of `before`, and all other friction sticking at its place in the
+  // start. Overloaded friction enters the set, friction that would slide back leaves it. Returns true once each element agrees with the set:
+  // that is the implicit increment of friction, exact for the normal forces of its end. Otherwise state_ is the start again. Throws if the
+  // machine leaves its place although friction is far from its bounds.
+  bool find_sliding_set(const RampedRest& before) {
+    const State start = state_;
+    State with_set = start;
+    for (const int f : before.sliding) set_sliding(with_set, f, start_.friction[f]);
+    std::vector<std::vector<int>> tried;
+    while (static_cast<int>(tried.size()) < k_most_sets && std::find(tried.begin(), tried.end(), sliding_in(with_set)) == tried.end()) {
+      tried.push_back(sliding_in(with_set));
+      state_ = with_set;
+      result_ = {};
+      DescentEnd end = DescentEnd::no_way;
+      try {
+        end = balance(k_most_moved);
+      } catch (const RunStopped&) {
+        throw;
+      } catch (const NumericalFailure&) { // the search came to a pose without a direction
+        if (flows_ > 0) throw;            // an elastic joint slips
+        break;
+      }
+      const auto is_far = [](const FrictionMargin& margin) { return margin.used < k_far_from_bound; };
+      const bool has_left = end == DescentEnd::runs_away || !result_.left.empty();
+      if (has_left && std::all_of(before.margins.begin(), before.margins.end(), is_far)) leave_place(away_);
+      if (has_left || end != DescentEnd::rest) break;
+      if (change_sliding_set(with_set)) continue;
+      if (has_slid_beside(with_set)) break;
+      release_unloaded();
+      return true;
+    }
+    state_ = start;
+    result_ = {};
+    return false;
+  }
+
+  static void set_sliding(State& state, int f, const FrictionState& direction) {
+    state.friction[f] = direction;
+    state.friction[f].phase = FrictionPhase::slip;
+    state.friction[f].is_onset = false;
+  }
+
+  [[nodiscard]] bool is_sliding_in(const State& state, int f) const {
+    return state.friction[f].phase == FrictionPhase::slip && !system_.frictions[f].friction->never_slips(); // excludes slack ropes
+  }
+
+  [[nodiscard]] std::vector<int> sliding_in(const State& state) const {
+    std::vector<int> sliding;
+    for (int f = 0; f < static_cast<int>(state.friction.size()); ++f)
+      if (is_sliding_in(state, f)) sliding.push_back(f);
+    return sliding;
+  }
+
+  // Frees friction that has slid and is without load at the end.
+  void release_unloaded() {
+    Statics statics(system_);
+    statics.evaluate(state_);
+    for (const int f : sliding_in(state_))
+      if (!system_.frictions[f].friction->is_loaded(statics.evaluation(), state_.friction[f]))
+        state_.friction[f].phase = FrictionPhase::free;
+  }
+
+  // Adapts the set of sliding friction in `with_set` to the equilibrium found with it. Returns false if all friction agrees with the set.
+  bool change_sliding_set(State& with_set) {
+    bool is_changed = false;
+    for (int f = 0; f < static_cast<int>(with_set.friction.size()); ++f) {
+      if (!is_sliding_in(with_set, f) || slid_since_start(f) * with_set.friction[f].sign >= -k_slid * length_) continue;
+      with_set.friction[f].phase = FrictionPhase::free; // sticks where it is loaded
+      is_changed = true;
+    }
+    if (is_changed || overloads_.empty()) return is_changed;
+    const auto worst =
+        std::max_element(overloads_.begin(), overloads_.end(), [](const Overload& a, const Overload& b) { return a.used < b.used; });
+    const int f = worst->friction;
+    const FrictionElement& element = *system_.frictions[f].friction;
+    if (element.dimension() > 1) throw ElementFailure("no static equilibrium: '" + name_of(f) + "' slips", {name_of(f)});
+    Statics statics(system_);
+    statics.evaluate(state_);
+    FrictionState direction = state_.friction[f];
+    element.set_onset_direction(statics.evaluation(), direction, worst->wrench);
+    set_sliding(with_set, f, direction);
+    return true;
+  }
+
+  // Returns true if friction that is not in the set of `with_set` has slid since the start, or if some of the set sticks.
+  [[nodiscard]] bool has_slid_beside(const State& with_set) const {
+    for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f) {
+      if (system_.frictions[f].friction->never_slips()) continue;
+      const bool should_slide = is_sliding_in(with_set, f), sticks = state_.friction[f].phase == FrictionPhase::stick;
+      if (should_slide ? sticks : std::abs(slid_since_start(f)) > k_slid * length_) return true;
+    }
+    return false;
+  }
+
+  [[noreturn]] void leave_place(const MotionPart& part) const {
+    throw ElementFailure("no static equilibrium: " + part_text(system_, part) + " leaves its place", {system_.bodies[part.body].name});
+  }
+
+  // Releases the machine at its start, where friction holds except for `sliding`.
+  void creep(const std::vector<int>& sliding) {
+    state_ = start_;
+    std::fill(state_.v.begin(), state_.v.end(), 0.0);
+    start_drives(system_, state_);
+    for (const int f : sliding) state_.friction[f].phase = FrictionPhase::slip;
+    const Settling settling = settle_near(system_, with_drives_held(), k_most_moved);
+    if (settling.away) leave_place(*settling.away);
+    if (!settling.rest) {
+      const std::string steps = std::to_string(settling.steps);
+      throw RestNotFound(settling.is_tried ? "no static equilibrium found in " + steps + " steps" : "the scene is too large to be let go",
+                         {});
+    }
+    State rest = *settling.rest;
+    rest.bases = held_bases(rest);
+    state_ = rest;
+    result_.settling_steps = settling.steps;
+  }
+
+  // Notes friction that has slid in this increment, and returns that which slides on: it ends at its bound, against its slide.
+  std::vector<int> note_slides() {
+    std::vector<int> sliding;
+    Statics statics(system_);
+    statics.evaluate(state_);
+    for (const FrictionMargin& margin : result_.margins) {
+      const int f = margin.friction;
+      const double slid = slid_since_start(f);
+      if (std::abs(slid) <= k_slid * length_ || state_.friction[f].phase == FrictionPhase::free) continue;
+      result_.slid.push_back(f);
+      FrictionState& friction = state_.friction[f];
+      friction.sign = slid > 0.0 ? 1 : -1;
+      double bound[3];
+      statics.slip_wrench(f, bound);
+      if (forces_[system_.frictions[f].row] * bound[0] >= k_at_bound * bound[0] * bound[0]) sliding.push_back(f);
+    }
+    return sliding;
+  }
+
+  // Returns the displacement of a friction's row since the start, the largest one in a plane; 0 for friction without load there.
+  [[nodiscard]] double slid_since_start(int f) const {
+    const FrictionUnit& unit = system_.frictions[f];
+    if (start_.friction[f].phase != FrictionPhase::stick) return 0.0;
+    std::vector<Motion<double>> before, now;
+    place_bodies(start_.q, state_.v, before);
+    place_bodies(state_.q, state_.v, now);
+    double most = 0.0;
+    for (int r = 0; r < unit.friction->dimension(); ++r) {
+      const RowSpec& row = unit.friction->rows(start_.friction[f])[r];
+      const double slid = evaluate_row<false>(row, now.data()).value - evaluate_row<false>(row, before.data()).value;
+      if (std::abs(slid) > std::abs(most)) most = slid;
+    }
+    return most;
+  }
+
+  void hold_where_it_is() {
+    for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f) {
+      if (state_.friction[f].phase != FrictionPhase::slip || system_.frictions[f].friction->never_slips()) continue; // excludes slack ropes
+      state_.friction[f].phase = FrictionPhase::stick;
+      anchor_friction(system_, state_, f);
+    }
+  }
+
+  // Balances forces with friction sticking where it is, and finds the margins. `reach`: see Descent.
+  DescentEnd balance(double reach) {
+    do {
+      Descent descent(system_, state_, algebra_);
+      descent.follow_increment(reach);
+      const DescentEnd end = descent.run();
+      take_over(descent);
+      away_ = end == DescentEnd::rest && !result_.left.empty() ? result_.left.front() : descent.runaway();
+      if (end != DescentEnd::rest) return end;
+      find_margins(descent);
+      if (let_flow()) throw ElementFailure("no static equilibrium: an elastic joint slips", {}); // as a rigid one, see check_increment
+    } while (change_ropes());
+    return DescentEnd::rest;
+  }
+
+  // Throws if a joint that friction holds in the plane slipped, because its sliding is not followed, or if friction of contacts slid far,
+  // because then nothing else held the body.
+  void check_increment() const {
+    for (const int f : result_.slid) {
+      if (system_.frictions[f].friction->dimension() > 1)
+        throw ElementFailure("no static equilibrium: '" + name_of(f) + "' slips", {name_of(f)});
+      if (std::abs(slid_since_start(f)) <= k_stands * length_ || !is_of_contacts(f)) continue;
+      const RowSpec& row = *system_.frictions[f].friction->rows(start_.friction[f]);
+      const std::string& body = system_.bodies[row.a == k_ground ? row.b : row.a].name;
+      throw ElementFailure("no static equilibrium: '" + name_of(f) + "' cannot hold, and '" + body + "' slides", {name_of(f), body});
+    }
+    for (const Overload& overload : overloads_)
+      if (overload.used > k_balanced_use)
+        throw RestNotFound("no static equilibrium found: '" + name_of(overload.friction) + "' would have to hold " +
+                               rounded(overload.used) + " times what it can",
+                           {name_of(overload.friction)});
+    if (!result_.left.empty()) leave_place(result_.left.front());
+  }
+
   // Releases the machine with strong damping and repeats the search from its final pose. `none`: failure of the first search.
   Equilibrium settled(const ElementFailure& none) {
     state_ = start_;
@@ -135,12 +364,7 @@ private:
     while (true) {
       Descent descent(system_, state_, algebra_);
       const DescentEnd end = descent.run();
-      result_.iterations += descent.iterations();
-      result_.residual = descent.residual();
-      result_.indifferent = descent.indifferent();
-      result_.more_indifferent = descent.more_indifferent();
-      result_.left.insert(result_.left.end(), descent.left().begin(), descent.left().end());
-      length_ = std::max(length_, descent.length());
+      take_over(descent);
       if (descent.yielding_at_start() > yielding_)
         for (Slip& slip : slips_) slip.gives_way = slip.gives_way || slip.is_new;
       for (Slip& slip : slips_) slip.is_new = false;
@@ -157,12 +381,17 @@ private:
     return at_rest();
   }
 
+  void take_over(const Descent& descent) {
+    result_.iterations += descent.iterations();
+    result_.residual = descent.residual();
+    result_.indifferent = descent.indifferent();
+    result_.more_indifferent = descent.more_indifferent();
+    result_.left.insert(result_.left.end(), descent.left().begin(), descent.left().end());
+    length_ = std::max(length_, descent.length());
+  }
+
   Equilibrium at_rest() {
-    for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f) {
-      if (state_.friction[f].phase != FrictionPhase::slip || system_.frictions[f].friction->never_slips()) continue; // excludes slack ropes
-      state_.friction[f].phase = FrictionPhase::stick;
-      anchor_friction(system_, state_, f);
-    }
+    hold_where_it_is();
     for (const Slip& slip : slips_) result_.slid.push_back(slip.friction);
     result_.hangs_on_way = (result_.is_settled || !result_.slid.empty()) && !result_.margins.empty();
     note_drives();
@@ -226,7 +455,8 @@ private:
     dynamics.rates(held.t, y.data(), dy.data());
     dynamics.evaluate_rigid_joint_events(dy.data());
     const LoadSharing* const sharing = dynamics.sharing();
-    std::vector<double> wrench(system_.friction_row_count, 0.0);
+    std::vector<double>& wrench = forces_;
+    wrench.assign(system_.friction_row_count, 0.0);
     const std::vector<StaticRow>& rows = descent.statics().rows();
     for (std::size_t r = 0; r < rows.size(); ++r)
       if (rows[r].friction >= 0) wrench[rows[r].friction_row] = descent.multipliers()[static_cast<Eigen::Index>(r)];
@@ -351,7 +581,7 @@ private:
   // Sticking forces are not determined by statics, since they depend on the history of loading. Searches for other admissible friction
   // forces that hold the machine, and returns true if there are any.
   bool share_anew(const Descent& descent) {
-    if (was_shared_anew_ || history_ == LoadHistory::ramped) return false;
+    if (was_shared_anew_) return false;
     // This search uses dense algebra, which takes hours in large models. In these, overloaded friction slides until it sticks.
     if (3 * (system_.body_count() - 1) > k_most_shared) {
       is_too_large_ = true;
@@ -482,7 +712,6 @@ private:
 
   const System& system_;
   const RestAlgebra algebra_;
-  const LoadHistory history_;
   int flows_ = 0;                 ///< slides of elastic joints in this search
   std::vector<double> last_flow_; ///< slide of each inner state at the last call of let_flow()
   const State& start_;
@@ -491,7 +720,9 @@ private:
   int yielding_ = 0;         ///< directions without resistance at the last equilibrium
   double least_usage_ = 0.0; ///< least utilisation over all admissible friction forces, if it was searched
   bool was_shared_anew_ = false;
-  bool is_too_large_ = false; ///< the model is too large for that search
+  bool is_too_large_ = false;  ///< the model is too large for that search
+  MotionPart away_;            ///< motion with which the last descent left its start
+  std::vector<double> forces_; ///< of friction at the last equilibrium, per row
   std::vector<Slip> slips_;
   std::vector<Overload> overloads_;
   std::vector<Overload> pushing_; ///< taut ropes that would have to push, with their wrenches
@@ -536,8 +767,12 @@ Equilibrium find_equilibrium(const System& system, const State& start, RestAlgeb
   return RestSearch(system, start, algebra).run();
 }
 
-Equilibrium find_ramped_rest(const System& system, const State& start) {
-  return RestSearch(system, start, RestAlgebra::by_size, LoadHistory::ramped).run();
+std::optional<Equilibrium> find_still_rest(const System& system, const Equilibrium& start) {
+  return RestSearch(system, start.state, RestAlgebra::by_size).run_still();
+}
+
+RampedRest rest_after_increment(const System& system, const RampedRest& before, bool may_creep) {
+  return RestSearch(system, before.state, RestAlgebra::by_size).run_increment(before, may_creep);
 }
 
 } // namespace steplap

@@ -23,18 +23,18 @@ constexpr double k_shortest = 1e-5; // fraction of the longest step; in shorter 
 constexpr double k_touch = 64.0;    // in roundings of the largest coordinate
 constexpr double k_on_rows = 1e-12; // m, rad
 // Limits of the number of steps, and of that number times the square of the number of rows and coordinates.
-constexpr int k_most_steps = 4000, k_least_steps = 100;
+constexpr int k_most_steps = 4000, k_most_steps_near = 400, k_least_steps = 100;
 constexpr double k_most_work = 4e8;
 
 class Settler {
 public:
-  Settler(const System& system, const State& start)
-      : system_(system), dynamics_(system), stepping_(system), state_(start), scene_(scale_of(system, start)),
-        clearance_(system, k_touch * k_epsilon * scene_.reach) {
+  Settler(const System& system, const State& start, std::optional<double> reach)
+      : system_(system), dynamics_(system), stepping_(system), start_(start.q), state_(start), scene_(scale_of(system, start)),
+        reach_(reach), clearance_(system, k_touch * k_epsilon * scene_.reach) {
     const auto limit = std::upper_bound(system.breakpoints.begin(), system.breakpoints.end(), start.t);
     dynamics_.set_left_limit_time(limit == system.breakpoints.end() ? system.drives_end : *limit);
     dynamics_.use_coordinates(Coordinates::absolute);
-    stepping_.hold_time(start.t);
+    stepping_.hold_time(start.t, reach.has_value());
   }
 
   Settling run() {
@@ -50,7 +50,7 @@ public:
     }
     double h = std::sqrt(k_first * scene_.length / reference_), longest = h;
     clearance_.measure(state_.q);
-    for (; found.steps < std::min(most, 1.0 * k_most_steps) && h > k_shortest * longest; ++found.steps) {
+    for (; found.steps < std::min(most, 1.0 * (reach_ ? k_most_steps_near : k_most_steps)) && h > k_shortest * longest; ++found.steps) {
       stop_if_asked("while the machine settled");
       State next = state_;
       if (!can_step(next, h)) {
@@ -64,6 +64,8 @@ public:
         continue;
       }
       state_ = next;
+      found.away = part_beyond_reach();
+      if (found.away) break;
       if (acceleration_of(way, h) <= k_balanced * reference_) {
         found.rest = state_;
         break;
@@ -111,6 +113,18 @@ private:
     return way.cwiseQuotient(scene_.scale).cwiseAbs().maxCoeff() / (h * h);
   }
 
+  // Returns the largest displacement since the start if it is beyond the reach.
+  [[nodiscard]] std::optional<MotionPart> part_beyond_reach() const {
+    if (!reach_) return {};
+    VecX moved(scene_.scale.size());
+    for (Eigen::Index k = 0; k < moved.size(); ++k) {
+      const auto i = static_cast<std::size_t>(k) + 3;
+      moved[k] = (state_.q[i] - start_[i]) / (*reach_ * (k % 3 < 2 ? scene_.length : 1.0));
+    }
+    if (moved.cwiseAbs().maxCoeff() <= 1.0) return {};
+    return largest_part(moved);
+  }
+
   // Returns the largest acceleration, m/s², that the forces on a body would cause without joints and friction; angular accelerations are
   // multiplied by the body's radius. Accelerations with constraints would not show forces that joints and friction resist.
   [[nodiscard]] double largest_at_start() {
@@ -128,14 +142,18 @@ private:
   const System& system_;
   Dynamics dynamics_;
   TimeStepping stepping_;
+  const std::vector<double> start_;
   State state_;
   SceneScale scene_;
+  const std::optional<double> reach_; ///< of the whole displacement, in sizes of the model and rad
   Clearance clearance_;
   double reference_ = 0.0;
 };
 
 } // namespace
 
-Settling settle_in_time(const System& system, const State& start) { return Settler(system, start).run(); }
+Settling settle_in_time(const System& system, const State& start) { return Settler(system, start, {}).run(); }
+
+Settling settle_near(const System& system, const State& start, double reach) { return Settler(system, start, reach).run(); }
 
 } // namespace steplap

@@ -14,6 +14,8 @@ namespace {
 // friction, as in the equations of motion (theory.md).
 constexpr double k_rank = 1e-9, k_friction_rank = 1e-6;
 constexpr double k_least_radius = 1e-3; // fraction of the size of the model
+// Share of the radius of gyration; bodies closer to each other do not determine the size of the model.
+constexpr double k_least_extent = 0.1;
 
 // Returns the indices of independent columns of `rows`: first those of joints (the first `joints` columns), then those of friction. Columns
 // have unit length.
@@ -56,7 +58,7 @@ SceneScale scale_of(const System& system, const State& state) {
     }
   SceneScale scene;
   scene.length = std::max({high[0] - low[0], high[1] - low[1], lever});
-  if (scene.length <= k_least_radius * gyration) scene.length = gyration;
+  if (scene.length <= k_least_extent * gyration) scene.length = gyration;
   if (!(scene.length > 0.0)) scene.length = 1.0;
   scene.reach = scene.length;
   scene.scale = VecX::Ones(3 * (system.body_count() - 1));

@@ -234,6 +234,10 @@ Assessment assess(const std::vector<std::string>& records, const std::vector<std
   sample(options, a);
   check_bandwidth_and_position(options, a);
   decide(a);
+  if (!options.second_records.empty()) {
+    a.recorders = {findings_of(a), assess_second(options.second_records, models, options)};
+    decide(a);
+  }
   find_dependence(options, a);
   assume(a);
   return a;

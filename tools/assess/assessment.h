@@ -5,6 +5,7 @@
 #include "tools/assess/coverage.h"
 #include "tools/assess/passage.h"
 #include "tools/assess/samples.h"
+#include "tools/assess/second_recorder.h"
 #include "transformer/decision/criteria.h"
 #include "transformer/decision/shipment.h"
 
@@ -18,12 +19,13 @@ namespace steplap::assess {
 /// Options of an assessment.
 struct AssessmentOptions {
   EventReading reading;
-  std::vector<std::string> overrides;     ///< "path=value", applied to every model
-  std::vector<Evidence> accepted;         ///< kinds of missing evidence that the user accepts
-  Shipment shipment;                      ///< shipping data for the report to be signed
-  std::optional<Voyage> voyage;           ///< begin and end of the transport
-  double budget = 60.0;                   ///< computing time, s per started day of record, for the search of a lower event threshold
-  std::string criteria = "acceptance-3g"; ///< file name or preset
+  std::vector<std::string> overrides;      ///< "path=value", applied to every model
+  std::vector<Evidence> accepted;          ///< kinds of missing evidence that the user accepts
+  std::vector<std::string> second_records; ///< files of a second recorder on the same machine; empty: there was one only
+  Shipment shipment;                       ///< shipping data for the report to be signed
+  std::optional<Voyage> voyage;            ///< begin and end of the transport
+  double budget = 60.0;                    ///< computing time, s per started day of record, for the search of a lower event threshold
+  std::string criteria = "acceptance-3g";  ///< file name or preset
   Estimating estimating = Estimating::cheap;
   SamplingOptions sampling;
   std::function<void(const std::string& what, long done, long all)> progress;
@@ -68,6 +70,7 @@ struct Assessment {
   std::vector<std::string> tests;       ///< tests to be made on the machine: those that would reveal the damage, then the usual ones
   std::vector<MissingEvidence> missing; ///< missing evidence of single records and of all records together
   std::vector<Evidence> accepted;
+  std::vector<RecorderFindings> recorders; ///< of the first and the second recorder, each on its own; empty if there was one only
   std::optional<VoyageSummary> by_samples; ///< summary with nominal values from the method used for samples, if it was run
   int halvings = 0;                        ///< number of halvings of the event threshold after which the decision no longer changed
 

@@ -311,6 +311,19 @@ Json shipment(const Shipment& s) {
           {"arrival", s.arrival}, {"recorders", recorders},       {"handovers", handovers}};
 }
 
+Json recorders(const Assessment& a) {
+  Json all = Json::array();
+  for (const RecorderFindings& found : a.recorders)
+    all.push_back({{"files", found.files},
+                   {"covered", found.covered},
+                   {"greatest", {{"x", number(found.greatest[0])}, {"y", number(found.greatest[1])}, {"z", number(found.greatest[2])}}},
+                   {"events", found.events},
+                   {"least_margin", number(found.least_margin)},
+                   {"decision", name_of(found.decision)},
+                   {"reason", found.reason}});
+  return all;
+}
+
 Json missing_evidence(const Assessment& a) {
   Json all = Json::array();
   for (const MissingEvidence& missing : a.missing)
@@ -336,6 +349,7 @@ std::string assessment_json(const Assessment& a) {
                      {"covered", coverage_text(a.records)},
                      {"covered_share", number(covered_share(a.records, a.voyage))},
                      {"records", records(a)},
+                     {"recorders", recorders(a)},
                      {"models", models(a)},
                      {"events", std::move(events)},
                      {"voyage", voyage(a)},

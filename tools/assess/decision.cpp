@@ -247,6 +247,17 @@ Reason judge_planes(const VoyageSummary& s) {
   return {name, s.planes_slip, source, outcome, {}, s.planes_use};
 }
 
+// The less favourable decision of two recorders counts.
+Reason judge_second(const RecorderFindings& second) {
+  const std::string file = "'" + second.files.front() + "'";
+  return {"second recorder",
+          "The second recorder, " + file + ", leads to \"" + name_of(second.decision) + "\": " + second.reason,
+          "rules of this program",
+          second.decision,
+          second.tests,
+          0.0};
+}
+
 // Adds reasons that are not criteria of the file: for example, missing evidence prevents "energise".
 void add_rules_of_program(const Assessment& a, const VoyageSummary& s, std::vector<Reason>& reasons) {
   const auto open = [&](const char* name, const std::string& text) {
@@ -257,6 +268,7 @@ void add_rules_of_program(const Assessment& a, const VoyageSummary& s, std::vect
       open("evidence",
            missing.reason + " " + missing.remedy + " (accept " + name_of(missing.item) + " puts the responsibility on the user.)");
   if (!a.shared.empty()) reasons.push_back(judge_planes(s));
+  if (!a.recorders.empty()) reasons.push_back(judge_second(a.recorders.back()));
   if (!s.unknown.empty()) open("runs to trust", "Not every event could be judged: " + s.unknown);
 }
 

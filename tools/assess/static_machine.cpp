@@ -3,15 +3,17 @@
 #include "elements/step_lap/step_lap_joint.h"
 #include "mbd/model/entries.h"
 #include "mbd/rest/assembly.h"
-#include "mbd/rest/ramped_rest.h"
 #include "mbd/rest/start.h"
 #include "mbd/run/failure.h"
+#include "mbd/run/prominence.h"
 #include "mbd/run/rest_values.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
+#include <utility>
 
 namespace steplap::assess {
 
@@ -20,11 +22,30 @@ namespace {
 // reserve reported for friction that has slid during loading; the amount by which its limit was exceeded is unknown
 constexpr double k_beyond = -1e-3;
 
+constexpr double k_first_increments[] = {1.0 / 16.0, 1.0 / 23.0}; // of the two divisions of a path; their halves do not coincide
+constexpr double k_small_force = 0.1;                             // of the largest force; smaller ones count as this one
+
+constexpr double k_near = 1e-3;    // of a pull: friction that has k_reserve left does not slide within it
+constexpr double k_reserve = 1e-2; // of its capacity
+
 int channel_index(const System& system, const std::string& name) {
   for (std::size_t i = 0; i < system.channels.size(); ++i)
     if (system.channels[i].name == name) return static_cast<int>(i);
   return -1;
 }
+
+// Sets a machine's gravity during its lifetime.
+class PulledMachine {
+public:
+  PulledMachine(System& system, const Vec2& gravity) : system_(system), before_(system.gravity) { system.gravity = gravity; }
+  PulledMachine(const PulledMachine&) = delete;
+  PulledMachine& operator=(const PulledMachine&) = delete;
+  ~PulledMachine() { system_.gravity = before_; }
+
+private:
+  System& system_;
+  const Vec2 before_;
+};
 
 Model with_monitors(Model model) {
   for (StepLapJoint* const joint : elements_of<StepLapJoint>(model))
@@ -33,6 +54,15 @@ Model with_monitors(Model model) {
 }
 
 } // namespace
+
+void Probe::append_equilibrium(std::vector<double> next) {
+  if (low.empty()) low = high = next;
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    if (!(next[i] >= low[i])) low[i] = next[i]; // NaN is the worst
+    if (!(next[i] <= high[i])) high[i] = next[i];
+  }
+  values = std::move(next);
+}
 
 const char* name_of(LimitKind kind) {
   switch (kind) {
@@ -47,16 +77,25 @@ const char* name_of(LimitKind kind) {
 StaticMachine::StaticMachine(const LoadedModel& loaded)
     : model_(with_monitors(loaded.model)), system_(compile(model_)), gravity_(system_->gravity) {
   try {
-    at_rest_.rest = equilibrium_at_start(*system_, assemble(model_, *system_));
+    at_rest_.rest = RampedRest{equilibrium_at_start(*system_, assemble(model_, *system_)), {}};
   } catch (const RunStopped&) { // the search was interrupted, so nothing is known about the machine
     throw;
   } catch (const NumericalFailure& failure) {
     throw NumericalFailure("without any acceleration: " + failure_of(failure, model_, *system_, 0.0).text);
   }
   std::fill(at_rest_.rest->state.v.begin(), at_rest_.rest->state.v.end(), 0.0);
-  at_rest_.values = values_at_rest(*system_, at_rest_.rest->state);
+  at_rest_.append_equilibrium(values_at_rest(*system_, at_rest_.rest->state));
   find_watches();
   at_rest_.left = reserves_of(at_rest_);
+}
+
+std::vector<std::vector<double>> StaticMachine::forces_in(const std::vector<double>& values) const {
+  std::map<std::string, std::vector<double>> forces; // by unit
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (is_reaction(system_->channels[i])) forces[system_->channels[i].unit].push_back(values[i]);
+  std::vector<std::vector<double>> lists;
+  for (auto& [unit, list] : forces) lists.push_back(std::move(list));
+  return lists;
 }
 
 void StaticMachine::find_watches() {
@@ -94,7 +133,7 @@ std::vector<double> StaticMachine::reserves_of(const Probe& probe) const {
   std::vector<double> left(watches_.size(), 1.0);
   for (std::size_t w = 0; w < watches_.size(); ++w) {
     if (channel_[w] >= 0) {
-      const double value = probe.values[static_cast<std::size_t>(channel_[w])];
+      const double value = probe.high[static_cast<std::size_t>(channel_[w])];
       left[w] = watches_[w].kind == LimitKind::lifts ? -value / rest_gap_[w] : 1.0 - value;
       continue;
     }
@@ -106,51 +145,121 @@ std::vector<double> StaticMachine::reserves_of(const Probe& probe) const {
   return left;
 }
 
-Probe StaticMachine::probe(const State& start, const Vec2& pull) {
-  struct Restored { // restores gravity at the end of the scope, also after an exception
-    System& system;
-    Vec2 gravity;
-    ~Restored() { system.gravity = gravity; }
-  } const restored{*system_, gravity_};
-  system_->gravity = gravity_ + pull;
+Probe StaticMachine::probe(const RampedRest& start, const Vec2& before, const Vec2& pull, double first_increment) {
+  RampQuestions questions;
   Probe probe;
+  questions.forces = [this](const RampedRest& rest) { return forces_in(values_at_rest(*system_, rest.state)); };
+  questions.on_rest = [&](const RampedRest& rest, double share) {
+    probe.append_equilibrium(values_at_rest(*system_, rest.state));
+    probe.rest = rest;
+    probe.pull = before + share * (pull - before);
+  };
+  questions.on_jump = [&](int f, double share) {
+    const int element = system_->frictions[static_cast<std::size_t>(f)].element;
+    if (!probe.jump)
+      probe.jump = Jump{system_->element_names[static_cast<std::size_t>(element)], Vec2(before + share * (pull - before)).norm()};
+  };
   try {
-    Equilibrium found = find_ramped_rest(*system_, start);
-    if (!found.left.empty()) {
-      probe.failure = "the pose balances, but a nudge of " + part_text(*system_, found.left.front()) + " leaves it";
-      return probe;
+    probe.rest = find_ramped_rest(*system_, start, {gravity_ + before, gravity_ + pull, first_increment}, questions);
+    probe.pull = pull;
+    probe.left = reserves_of(probe);
+    probe.is_still = probe.rest->slid.empty();
+  } catch (const RunStopped&) {
+    throw;
+  } catch (const NumericalFailure& failure) {
+    Probe none;
+    if (probe.rest) {
+      probe.left = reserves_of(probe);
+      probe.is_still = probe.rest->slid.empty();
+      none.reached = std::make_shared<Probe>(std::move(probe));
     }
-    if (found.turned != 0.0) {
-      probe.failure = "'" + system_->bodies[static_cast<std::size_t>(found.turned_body)].name + "' tips over";
-      return probe;
-    }
-    probe.values = values_at_rest(*system_, found.state);
-    probe.rest = std::move(found);
+    none.pull = pull;
+    none.failure = failure.what();
+    none.is_unknown = dynamic_cast<const RestNotFound*>(&failure) != nullptr;
+    return none;
+  }
+  return probe;
+}
+
+// If only one of both paths comes to a rest, returns that one.
+Probe StaticMachine::in_two_divisions(const std::function<Probe(double first_increment)>& path) const {
+  Probe found = path(k_first_increments[0]), other = path(k_first_increments[1]);
+  if (!found.rest) std::swap(found, other);
+  if (!found.rest) return found;
+  found.doubt = other.rest ? largest_difference(forces_in(found.values), forces_in(other.values), k_small_force)
+                           : std::numeric_limits<double>::infinity();
+  if (!found.jump) found.jump = other.jump;
+  return found;
+}
+
+Probe StaticMachine::ramped(const Vec2& pull) {
+  return in_two_divisions([&](double first) { return probe(*at_rest_.rest, Vec2::Zero(), pull, first); });
+}
+
+Probe StaticMachine::ramped_from(const Probe& before, const Vec2& pull) {
+  if (before.is_still) {
+    Probe found = still(pull);
+    // Near a rest in which friction is far from sliding the machine leaves its place with all friction sticking.
+    if (found.rest || (!found.is_unknown && (pull - before.pull).norm() <= k_near * pull.norm() && has_reserve(before))) return found;
+  }
+  Probe found = probe(*before.rest, before.pull, pull);
+  found.is_still = found.is_still && before.is_still;
+  if (found.reached) found.reached->is_still = found.reached->is_still && before.is_still;
+  return found;
+}
+
+Probe StaticMachine::still(const Vec2& pull) {
+  const PulledMachine pulled(*system_, gravity_ + pull);
+  Probe probe;
+  probe.pull = pull;
+  try {
+    std::optional<Equilibrium> found = find_still_rest(*system_, *at_rest_.rest);
+    probe.is_unknown = !found;
+    if (!found) return probe;
+    probe.rest = RampedRest{std::move(*found), {}};
+    probe.append_equilibrium(values_at_rest(*system_, probe.rest->state));
     probe.left = reserves_of(probe);
   } catch (const RunStopped&) {
     throw;
   } catch (const NumericalFailure& failure) {
     probe.failure = failure.what();
-    probe.is_unknown = dynamic_cast<const RestNotFound*>(&failure) != nullptr;
     probe.rest.reset();
   }
   return probe;
 }
 
-Probe StaticMachine::ramped(const Vec2& pull) { return probe(at_rest_.rest->state, pull); }
-
-Probe StaticMachine::ramped_from(const Probe& before, const Vec2& pull) { return probe(before.rest->state, pull); }
-
-Probe StaticMachine::without_friction(const Vec2& pull) {
-  State loose = at_rest_.rest->state;
+bool StaticMachine::has_reserve(const Probe& probe) const {
   for (std::size_t w = 0; w < watches_.size(); ++w)
-    if (watches_[w].kind == LimitKind::slides) loose.friction[static_cast<std::size_t>(friction_[w])].phase = FrictionPhase::apart;
-  return probe(loose, pull);
+    if (watches_[w].kind != LimitKind::lifts && probe.left[w] < k_reserve) return false;
+  return true;
 }
 
-double StaticMachine::value(const Probe& probe, const std::string& channel) const {
+Probe StaticMachine::loaded_again(const Probe& before, const Vec2& pull) {
+  Probe again = in_two_divisions([&](double first) {
+    const Probe unloaded = probe(*before.rest, before.pull, Vec2::Zero(), first);
+    if (!unloaded.rest) return unloaded;
+    Probe loaded = probe(*unloaded.rest, Vec2::Zero(), pull, first);
+    if (unloaded.jump) loaded.jump = unloaded.jump;
+    return loaded;
+  });
+  again.doubt = std::max(again.doubt, before.doubt);
+  return again;
+}
+
+Probe StaticMachine::without_friction(const Vec2& pull) {
+  RampedRest loose = *at_rest_.rest;
+  for (std::size_t w = 0; w < watches_.size(); ++w)
+    if (watches_[w].kind == LimitKind::slides) loose.state.friction[static_cast<std::size_t>(friction_[w])].phase = FrictionPhase::apart;
+  Probe found = in_two_divisions([&](double first) { return probe(loose, Vec2::Zero(), pull, first); });
+  if (!found.rest) return found;
+  found.low = found.high = found.values; // the growing pull is only the way of the search: without it the loose machine may have no rest
+  found.left = reserves_of(found);
+  return found;
+}
+
+double StaticMachine::value_in(const std::vector<double>& values, const std::string& channel) const {
   const int index = channel_index(*system_, channel);
-  return index < 0 || probe.values.empty() ? std::numeric_limits<double>::quiet_NaN() : probe.values[static_cast<std::size_t>(index)];
+  return index < 0 || values.empty() ? std::numeric_limits<double>::quiet_NaN() : values[static_cast<std::size_t>(index)];
 }
 
 } // namespace steplap::assess

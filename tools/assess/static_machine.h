@@ -9,9 +9,11 @@
 // even for a joint that would slip.
 #pragma once
 
-#include "mbd/rest/equilibrium.h"
+#include "mbd/rest/ramped_rest.h"
 #include "mbd/run/loaded_model.h"
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,15 +36,30 @@ struct Watch {
   std::string element;
 };
 
+/// A jump of a machine under a growing pull: friction slides past its next rest (mbd/rest/ramped_rest.h).
+struct Jump {
+  std::string element;       ///< that slides
+  double acceleration = 0.0; ///< of the pull, m/s²
+};
+
 /// Result of the search for an equilibrium under one pull: an equilibrium, or the reason why there is none.
 struct Probe {
-  std::optional<Equilibrium> rest;
-  std::string failure;     ///< sentence why there is no equilibrium
-  bool is_unknown = false; ///< true if the search failed without proving that no equilibrium exists
-  /// reserve of each monitored limit: 1 − utilisation, or contact force relative to that at rest; positive below the limit; for linear
-  /// statics a concave or linear function of the pull
-  std::vector<double> left;
-  std::vector<double> values; ///< values of all channels
+  std::optional<RampedRest> rest;
+  std::string failure;            ///< sentence why there is no equilibrium
+  std::shared_ptr<Probe> reached; ///< the last equilibrium on the path, if there is none under the whole pull
+  bool is_unknown = false;        ///< true if the search failed without proving that no equilibrium exists
+  std::vector<double> left;   ///< least reserve of each watch on the path: positive below its limit, zero at it; for linear statics convex
+                              ///< or linear in the pull
+  Vec2 pull = Vec2::Zero();   ///< pull at this equilibrium, m/s²
+  std::vector<double> values; ///< of System::channels
+  std::vector<double> low, high; ///< extremes of `values` on the path; NaN once a value was NaN
+
+  std::optional<Jump> jump; ///< the first one on the path
+  bool is_still = true;     ///< nothing has slid since the equilibrium without pull
+  double doubt = 0.0;       ///< difference of its forces from those of a path with other increments, as a share of them
+
+  /// Adds the values of the next equilibrium on the path.
+  void append_equilibrium(std::vector<double> next);
 };
 
 /// A model prepared for statics under different pulls.
@@ -59,18 +76,33 @@ public:
   /// Returns the step-lap joints with finite friction capacity.
   [[nodiscard]] const std::vector<std::string>& joints() const { return joints_; }
 
-  /// Returns the equilibrium under `pull`, m/s², which grows from zero. Starts from the equilibrium under gravity alone.
+  // Each pull is followed from the equilibrium before it (mbd/rest/ramped_rest.h), whole paths twice: two different divisions of the path into
+  // increments must come to the same forces (Probe::doubt).
+  /// Increases the pull from zero, starting from the equilibrium under gravity alone.
   [[nodiscard]] Probe ramped(const Vec2& pull);
-  /// As ramped(), but starts from the equilibrium `before` under another pull.
+  /// Increases the pull from the equilibrium `before`, which belongs to another pull. While friction sticks the rest does not depend on the
+  /// path, and is found at once.
   [[nodiscard]] Probe ramped_from(const Probe& before, const Vec2& pull);
-  /// Returns the equilibrium without friction along lines and about pins, as after long vibration. Friction of joints in the plane holds.
+  /// Takes the pull of `before` back to zero, then increases `pull` from there; extremes are those of the second part.
+  [[nodiscard]] Probe loaded_again(const Probe& before, const Vec2& pull);
+  /// Returns the equilibrium without friction along lines and about pins, as after long vibration. Friction of joints in the plane holds. The
+  /// extremes are the values at the end.
   [[nodiscard]] Probe without_friction(const Vec2& pull);
-  /// Returns the value of a channel; NaN if there is none of that name.
-  [[nodiscard]] double value(const Probe& probe, const std::string& channel) const;
+  /// Returns the value of a channel, or its extreme on the path; NaN if there is none of that name.
+  [[nodiscard]] double value(const Probe& probe, const std::string& channel) const { return value_in(probe.values, channel); }
+  [[nodiscard]] double least(const Probe& probe, const std::string& channel) const { return value_in(probe.low, channel); }
+  [[nodiscard]] double largest(const Probe& probe, const std::string& channel) const { return value_in(probe.high, channel); }
 
 private:
   void find_watches();
-  Probe probe(const State& start, const Vec2& pull);
+  Probe probe(const RampedRest& start, const Vec2& before, const Vec2& pull, double first_increment = 1.0);
+  /// `path` is called with the length of its first increment, as a share of the pull.
+  [[nodiscard]] Probe in_two_divisions(const std::function<Probe(double first_increment)>& path) const;
+  [[nodiscard]] Probe still(const Vec2& pull);
+  [[nodiscard]] bool has_reserve(const Probe& probe) const;
+  /// Returns the reactions among the values of channels, in a list for each unit.
+  [[nodiscard]] std::vector<std::vector<double>> forces_in(const std::vector<double>& values) const;
+  [[nodiscard]] double value_in(const std::vector<double>& values, const std::string& channel) const;
   [[nodiscard]] std::vector<double> reserves_of(const Probe& probe) const;
 
   Model model_;

@@ -19,14 +19,14 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr double k_close = 1e-6;      // relative accuracy of a margin, from the accuracy of equilibria
-constexpr double k_at_bound = 0.98;   // utilisation from which friction is at its limit; forces of sliding friction are accurate to 2 %
-constexpr double k_just_below = 1e-3; // relative distance below the first limit at which the other loading paths are computed
+constexpr double k_close = 1e-6;       // relative accuracy of a margin, from the accuracy of equilibria
+constexpr double k_same_forces = 5e-3; // difference by which forces of two paths of the same load are the same
+constexpr double k_just_below = 1e-3;  // relative distance below the first limit at which the other loading paths are computed
 
 // Returns true for channels that have a meaning at rest: those whose unit contains no rate.
 bool is_of_rest(const std::string& unit) { return unit.find("/s") == std::string::npos; }
 
-// Returns the equilibrium as the result of a run that starts and ends there.
+// Returns the results of a path to an equilibrium in the form of a run from the equilibrium without acceleration.
 RunResult as_run(const StaticMachine& machine, const Probe& probe) {
   RunResult result;
   result.trajectory = std::make_unique<Trajectory>(machine.system(), std::vector<std::string>{""});
@@ -37,10 +37,9 @@ RunResult as_run(const StaticMachine& machine, const Probe& probe) {
     range.channel = &machine.system().channels[i];
     range.first = first;
     range.final = last;
-    range.low = {first < last ? first : last, 0.0};
-    range.high = {first > last ? first : last, 0.0};
-    if (std::isnan(last)) range.low.value = range.high.value = last;
-    range.had_no_value = std::isnan(first) || std::isnan(last);
+    range.low = {std::min(probe.low[i], first), 0.0}; // NaN on the path remains
+    range.high = {std::max(probe.high[i], first), 0.0};
+    range.had_no_value = std::isnan(first) || std::isnan(probe.low[i]);
     result.ranges.push_back(range);
   }
   return result;
@@ -126,9 +125,8 @@ private:
   void add_other_paths() {
     const Vec2& pull = case_.load.pull;
     if (pull == Vec2::Zero()) return;
-    turned_ = machine_.ramped(-pull);
-    if (turned_.rest) {
-      returned_ = machine_.ramped_from(turned_, pull);
+    if (const Probe turned = machine_.ramped(-pull); turned.rest) {
+      returned_ = machine_.loaded_again(turned, pull);
       if (returned_.rest) ways_.push_back(&returned_);
       else
         note(Verdict::open, "there is a rest if the load grows from nothing, but none is found after the same load the other way round: " +
@@ -145,7 +143,7 @@ private:
     for (const std::string& joint : machine_.joints()) {
       StaticJoint one{joint, std::numeric_limits<double>::infinity()};
       for (const Probe* way : ways_) {
-        const double margin = machine_.value(*way, joint + ".margin");
+        const double margin = machine_.least(*way, joint + ".margin");
         if (!(margin >= one.margin)) one.margin = margin; // also true if margin is NaN
       }
       case_.joints.push_back(one);
@@ -157,7 +155,7 @@ private:
       StaticFoot foot{watch.element, false, machine_.value(grown_, watch.element + ".force"), 0.0};
       for (const Probe* way : ways_) {
         foot.lifts = foot.lifts || way->left[w] <= 0.0;
-        foot.height = std::max(foot.height, machine_.value(*way, watch.element + ".gap"));
+        foot.height = std::max(foot.height, machine_.largest(*way, watch.element + ".gap"));
       }
       case_.feet.push_back(foot);
     }
@@ -168,58 +166,16 @@ private:
     find_tipping();
   }
 
-  // Checks friction that slid during a search for equilibrium. The search applies the whole load at once and can overshoot the equilibrium
-  // of a slowly growing load. Under a growing load, sliding friction is at its limit and opposes its slide from `start`. If it is not, it
-  // carries less than it would, and parallel elements carry more. Limits on friction forces then remain open; other results are
-  // conservative.
-  void check_slides(const Probe& way, const State& start) {
-    for (const FrictionMargin& margin : way.rest->margins) {
-      const std::vector<int>& slid = way.rest->slid;
-      if (std::find(slid.begin(), slid.end(), margin.friction) == slid.end()) continue;
-      const std::string& name = name_of(margin.friction);
-      const bool is_at_bound = margin.used >= k_at_bound;
-      if (is_at_bound && !acts_along_slide(way, start, margin, name)) continue;
-      const std::string passed =
-          "'" + name + "' has slid and then " +
-          (is_at_bound ? "pushes in the direction of its slide" : "carries " + rounded_text(100.0 * margin.used, 3) + " % of what it can") +
-          ", so the search went past the rest of a load that grows";
-      case_.remarks.push_back(passed + ": what holds the machine next to it may carry less than is stated");
-      for (const Criterion& criterion : machine_.model().criteria) check_friction_limit(criterion, way, passed);
-      return;
-    }
-  }
-
-  // Sets the verdict to open if the criterion limits a friction force that can reach this limit.
-  void check_friction_limit(const Criterion& criterion, const Probe& way, const std::string& passed) {
-    for (std::size_t f = 0; f < machine_.system().frictions.size(); ++f) {
-      const std::string& name = name_of(static_cast<int>(f));
-      const double capacity = machine_.value(way, name + ".capacity"), largest = criterion.within.value_or(criterion.at_most.value_or(0.0));
-      if (!matches_pattern(name + ".friction", criterion.channel) || capacity < largest) continue;
-      note(Verdict::open, "'" + criterion.channel + "' is not known: " + passed + ". Let the load grow slowly in a run");
-    }
-  }
-
-  [[nodiscard]] const std::string& name_of(int friction) const {
-    const System& system = machine_.system();
-    return system.element_names[static_cast<std::size_t>(system.frictions[static_cast<std::size_t>(friction)].element)];
-  }
-
-  [[nodiscard]] const FrictionUnit& unit_of(const FrictionMargin& margin) const {
-    return machine_.system().frictions[static_cast<std::size_t>(margin.friction)];
-  }
-
-  // Returns true if friction along a line acts in the direction in which it slid since `start`, which friction cannot do under a growing
-  // load.
-  [[nodiscard]] bool acts_along_slide(const Probe& way, const State& start, const FrictionMargin& margin, const std::string& name) const {
-    const FrictionElement& friction = *unit_of(margin).friction;
-    if (friction.dimension() != 1) return false;
-    const State& rest = way.rest->state;
-    const RowSpec& row = *friction.rows(rest.friction[static_cast<std::size_t>(margin.friction)]);
-    std::vector<Motion<double>> before, now;
-    place_bodies(start.q, start.v, before);
-    place_bodies(rest.q, rest.v, now);
-    const double slid = evaluate_row<false>(row, now.data()).value - evaluate_row<false>(row, before.data()).value;
-    return machine_.value(way, name + ".friction") * slid > 0.0; // NaN, if there is no such channel, gives false
+  // A jump ends where the machine's inertia lets it, and forces that depend on the division of the path are not those of the machine.
+  void check_path(const Probe& way) {
+    const std::string advice = "Let the load grow slowly in a run";
+    if (way.jump)
+      note(Verdict::open, "'" + way.jump->element + "' slides by a jump at " + acceleration(way.jump->acceleration) +
+                              ", and where that ends depends on inertia. " + advice);
+    if (std::isinf(way.doubt)) note(Verdict::open, "one of two divisions of the load's path into increments comes to no rest. " + advice);
+    else if (way.doubt > k_same_forces)
+      note(Verdict::open, "forces differ by " + rounded_text(100.0 * way.doubt, 2) +
+                              " % between two divisions of the load's path into increments. " + advice);
   }
 
   void collect_reactions() {
@@ -228,7 +184,8 @@ private:
       if (!is_reaction(channels[i])) continue;
       StaticReaction reaction{channels[i].name, 0.0, channels[i].unit, {}};
       for (const Probe* way : ways_)
-        if (!(std::abs(way->values[i]) <= std::abs(reaction.value))) reaction.value = way->values[i];
+        for (const double value : {way->values[i], way->low[i], way->high[i]})
+          if (!(std::abs(value) <= std::abs(reaction.value))) reaction.value = value;
       for (const Criterion& c : machine_.model().criteria) {
         if (!matches_pattern(reaction.name, c.channel)) continue;
         const std::optional<double> bound = c.within ? c.within : c.at_most;
@@ -268,8 +225,9 @@ private:
         if (std::find(case_.remarks.begin(), case_.remarks.end(), remark) == case_.remarks.end())
           case_.remarks.push_back(std::move(remark));
     }
-    check_slides(grown_, machine_.at_rest().rest->state);
-    if (returned_.rest) check_slides(returned_, turned_.rest->state);
+    check_path(grown_);
+    check_path(returned_);
+    check_path(loose_);
     for (const StaticJoint& joint : case_.joints)
       if (!(std::abs(joint.margin - 1.0) > k_close)) note(Verdict::open, "the margin of '" + joint.name + "' is 1 within rounding");
     for (const FrictionMargin& margin : grown_.rest->margins)
@@ -282,7 +240,7 @@ private:
 
   StaticMachine& machine_;
   const LoadedModel& loaded_;
-  Probe grown_, turned_, returned_, loose_;
+  Probe grown_, returned_, loose_;
   std::vector<const Probe*> ways_;
   StaticCase case_;
 };
@@ -295,7 +253,7 @@ bool has_equilibrium_from_opposite(StaticMachine& machine, const Vec2& pull) {
   };
   const Probe turned = machine.ramped(-pull);
   if (!is_intact(turned)) return true; // the opposite pull would exceed a limit itself, so there is no second path to compare
-  return is_intact(machine.ramped_from(turned, pull));
+  return is_intact(machine.loaded_again(turned, pull));
 }
 
 StaticDirection limits_along(StaticMachine& machine, double angle, double largest) {

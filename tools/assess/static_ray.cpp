@@ -32,7 +32,7 @@ public:
     const double g = machine_.gravity().norm();
     const double first = k_first_step * (g > 0.0 ? std::min(g, most_) : most_);
     for (double a = std::min(first, most_);; a = std::min(most_, std::max(a + first, a * k_growth))) {
-      Point high = at(a);
+      Point high = at(low, a);
       if (!high.probe.rest) {
         locate_end(low, high);
         break;
@@ -48,7 +48,7 @@ public:
   }
 
 private:
-  [[nodiscard]] Point at(double a) { return {a, machine_.ramped(a * direction_)}; }
+  [[nodiscard]] Point at(const Point& low, double a) { return {a, machine_.ramped_from(low.probe, a * direction_)}; }
 
   void note(std::size_t w, double a, double error) {
     is_reached_[w] = 1;
@@ -86,7 +86,7 @@ private:
         if (guess > low.a && guess < high.a) next = i % 3 == 0 ? guess - aside : guess + aside;
       }
       if (!(next > low.a && next < high.a)) next = low.a + 0.5 * width;
-      Point middle = at(next);
+      Point middle = at(low, next);
       if (is_good(middle.probe)) {
         before = std::move(low);
         low = std::move(middle);
@@ -108,6 +108,7 @@ private:
 
   void locate_end(const Point& from, const Point& to) {
     Point low = from, high = to;
+    if (to.probe.reached) low = {to.probe.reached->pull.dot(direction_), *to.probe.reached};
     bisect(low, high, std::nullopt, [](const Probe& p) { return p.rest.has_value(); });
     locate_limits(from, low);
     found_.largest = low.a;

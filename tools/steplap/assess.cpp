@@ -66,6 +66,8 @@ Of a static proof (docs/how-to/prove_statically.md): 0 the machine is proven to 
        "when the journey began and ended: two dates with times of day, or seconds of the record. Less covered than that is open"},
       {"--shipment", &o->shipment, "FILE",
        "serial numbers, departure, handovers, arrival and recorders, for the sheet that is signed; departure and arrival are the voyage"},
+      {"--second", &o->second_records, "FILE",
+       "record of a second recorder on the same machine, read like the first; may be repeated. The less favourable decision counts"},
       {"--accept", &o->accepted, "EVIDENCE",
        "decide although it is missing: clipped, gaps, peaks, cut, comments, fall, dead, unit, axis, coverage, clock, bandwidth, place or "
        "vibration; may be repeated"},

@@ -11,7 +11,7 @@ namespace steplap {
 
 /// Arguments as given on the command line.
 struct AssessOptions : ReadingOptions {
-  std::vector<std::string> records, models, overrides, accepted;
+  std::vector<std::string> records, models, overrides, accepted, second_records;
   Text criteria, print_criteria, samples, seed, threads, pulse, pulse_axis, voyage, shipment, budget;
   Text static_preset, plane, directions, largest;
   Text output;

@@ -103,6 +103,37 @@ TEST_CASE("a limit that is met, one that is not, and one that rejects: energise,
   CHECK(both.events[0].passages.size() == 2);
 }
 
+// With friction 0.5 the block slides under 1.2 g for 0.1 s, and not under 0.4 g. Neither recorder may be the one that is believed.
+TEST_CASE("of two recorders on one machine the less favourable decision counts, whichever is the second") {
+  const Folder folder;
+  const std::string model = block_file(folder, 0.5, "1 mm"), calm = folder.file("calm.csv"), shock = folder.file("shock.csv"),
+                    cut = folder.file("cut.csv");
+  write(calm, record_csv(1000.0, 2.0, [](double t) { return half_sine(t, 0.5, 0.1, 0.4 * k_gravity); }));
+  write(shock, record_csv(1000.0, 2.0, [](double t) { return half_sine(t, 0.5, 0.1, 1.2 * k_gravity); }));
+  write(cut, record_csv(1000.0, 2.0, [](double t) { return half_sine(t, 1.95, 0.1, 0.4 * k_gravity); }));
+  AssessmentOptions options = options_of();
+  options.reading.rules.threshold = 0.2 * k_gravity;
+  options.criteria = folder.file("criteria.toml");
+  write(options.criteria, k_only_models);
+  const auto with = [&](const std::string& first, const std::string& second) {
+    options.second_records = {second};
+    return assess::assess({first}, {model}, options);
+  };
+  CHECK(with(calm, calm).decision == Decision::energise);
+  for (const bool is_second : {false, true}) {
+    CAPTURE(is_second);
+    const Assessment both = is_second ? with(calm, shock) : with(shock, calm);
+    CHECK(both.decision == Decision::inspect);
+    REQUIRE(both.recorders.size() == 2);
+    CHECK(both.recorders[0].decision == (is_second ? Decision::energise : Decision::inspect));
+    CHECK(both.recorders[1].decision == (is_second ? Decision::inspect : Decision::energise));
+    CHECK((both.reason.find("shock.csv") != std::string::npos) == is_second);
+    // A half sine of 0.1 s loses less than 2 % of its peak below 100 Hz.
+    CHECK(both.recorders[is_second ? 1 : 0].greatest[0] == doctest::Approx(1.2 * k_gravity).epsilon(0.02));
+    CHECK((is_second ? with(calm, cut) : with(cut, calm)).decision == Decision::open);
+  }
+}
+
 TEST_CASE("a record that is clipped or has gaps leaves the decision open, unless that is accepted") {
   const Folder folder;
   const std::string model = block_file(folder, 0.5, "1 m"), record = folder.file("shock.csv");

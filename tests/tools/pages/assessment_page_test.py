@@ -209,6 +209,7 @@ class AssessmentPageTest(base.Page):
         self.show("plain")
         sheet = self.print_page("plain")[0]
         for part in ("T-4711", "SL-0815", "calibrated 2025-11-02", "range 16 g", "mounted lid, above limb 2", "2026-01-04 10:00", "Rotterdam, 2026-01-05 08:00", "The record covers 55.9 h.", "99.8 %",
+                     "inspect, 3 events, x up to 3 g, y up to 0.5 g,", "energise, 4 events, x up to 2.8 g, y up to 0.52 g,",
                      "Dew point of the gas", "Pressure of the gas", "Resistance core to earth", "Visible damage"):
             self.assertIn(part, sheet)
         self.assertEqual(len(self.all('#sheet figure.curve[data-event="2"] path')), 2)  # the worst event, as it was recorded

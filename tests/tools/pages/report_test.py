@@ -101,10 +101,10 @@ class Page(unittest.TestCase):
 
     def open(self, page, size=(1280, 800)):
         self.browser.set_window_size(*size)
-        self.browser.get("file://" + os.path.join(WORK.name, page))
+        self.browser.get("about:blank")  # so that the same page is loaded again, and the logs hold nothing of the last one
         self.browser.get_log("browser")
         self.browser.get_log("performance")
-        self.browser.refresh()
+        self.browser.get("file://" + os.path.join(WORK.name, page))
         self.until(lambda: self.find("body").get_attribute("data-ready") == "true")
 
     def unfold(self):

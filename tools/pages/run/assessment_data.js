@@ -71,6 +71,11 @@ steplap.assessment = (() => {
   const margin = (j) => (j.margin > 1000 ? 'over\u00a01000' : one(j.margin, '', j.slips ? {} : { error: j.error, limit: 1 }));
   const marginText = (m) => (m.weakest ? margin(m.weakest) : '–');
   const slidText = (value) => one(value, 'm', { rounding: 1e-9 });
+  // What one of two recorders says, in a line.
+  const recorderText = (r) => [outcomes[r.decision] || r.decision, `${r.events} events`,
+    ...['x', 'y', 'z'].filter((axis) => isKnown(r.greatest[axis])).map((axis) => `${axis} up to ${inG(r.greatest[axis])}`),
+    ...(isKnown(r.least_margin) ? [`least margin ${one(r.least_margin, '')}`] : [])]
+                                .join(', ');
   const timeText = (e) => (e.clock ? String(e.clock).replace('T', ' ').replace(/\.0+$/, '') : isKnown(e.time) ? one(e.time, 's') : '–');
 
   // Returns contradictions within the file. They are shown at the head of the page, because the reader signs it.
@@ -143,6 +148,7 @@ steplap.assessment = (() => {
     models,
     statics,
     records: list(given && given.records),
+    recorders: list(given && given.recorders),
     reasons: list(given && given.reasons).sort((a, b) => graveness(a) - graveness(b)),
     hangs: list(given && given.hangs_on),
     tests: list(given && given.tests),
@@ -164,6 +170,7 @@ steplap.assessment = (() => {
     margin,
     marginText,
     timeText,
+    recorderText,
     contradictions,
     answer
   };

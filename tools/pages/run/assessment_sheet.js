@@ -43,7 +43,8 @@ steplap.assessmentSheet = () => {
       ['Transformer', make('span', {}, 'serial number ', orBlank(p.transformer, limit))],
       ...shown.map((r) => [`Recorder${r.record ? ` of ${short(r.record, 30)}` : ''}`, recorder(r)]),
       ['Journey', make('span', {}, 'departure ', orBlank(p.departure, limit), ...handovers, ' · arrival ', orBlank(p.arrival, limit))],
-      ['Recorded', `${short(A.covered || 'Not stated.', limit)}${A.journey ? ` Asked: ${short(A.journey, limit)}.` : ''}${share}`]
+      ['Recorded', `${short(A.covered || 'Not stated.', limit)}${A.journey ? ` Asked: ${short(A.journey, limit)}.` : ''}${share}`],
+      ...A.recorders.map((r, i) => [`${i ? 'Second' : 'First'} recorder alone`, short(`${A.recorderText(r)}: ${r.reason}`, 1.5 * limit)])
     ];
     const curve = A.worst.length ? steplap.events.curve(A.worst[0]) : null, still = keep.machine && A.worst.length ? worstMachine() : null;
     const left = [

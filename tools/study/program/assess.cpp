@@ -108,6 +108,7 @@ AssessmentOptions assessment_options(const AssessOptions& o) {
     options.reading.pulse->axis = o.pulse_axis->front();
   }
   options.overrides = o.overrides;
+  options.second_records = o.second_records;
   options.accepted = accepted_evidence(o);
   if (o.voyage) {
     options.voyage = parse_voyage(*o.voyage);
@@ -194,6 +195,15 @@ std::vector<std::size_t> shown_events(const Assessment& a) {
   return order;
 }
 
+// Returns the largest readings, as in "x 1.2 g, z 0.4 g".
+std::string greatest_text(const RecorderFindings& found) {
+  std::string text;
+  for (std::size_t i = 0; i < found.greatest.size(); ++i)
+    if (std::isfinite(found.greatest[i]))
+      text += (text.empty() ? "" : ", ") + std::string(1, "xyz"[i]) + " " + rounded_text(found.greatest[i] / k_gravity, 3) + " g";
+  return text.empty() ? "nothing" : text;
+}
+
 void print_assessment(std::ostream& out, const Assessment& a, const std::string& file) {
   out << "Decision: " << name_of(a.decision) << ". " << a.reason << "\n\n";
   for (std::size_t i = 0; i < a.reasons.size() && i < k_shown_reasons; ++i)
@@ -215,6 +225,10 @@ void print_assessment(std::ostream& out, const Assessment& a, const std::string&
         << percent(a.damage.high) << ", " << a.damage.runs << " samples).\n";
   for (std::size_t i = 0; i < a.hangs_on.size() && i < k_shown_sentences; ++i) out << a.hangs_on[i] << "\n";
   if (a.decision != Decision::energise) out << coverage_text(a.records) << "\n"; // for "energise" the first line contains it
+  for (std::size_t i = 0; i < a.recorders.size(); ++i)
+    out << (i == 0 ? "First" : "Second") << " recorder: " << name_of(a.recorders[i].decision) << ", "
+        << counted(a.recorders[i].events, "event", "events") << ", at most " << greatest_text(a.recorders[i]) << ", least margin "
+        << rounded_text(a.recorders[i].least_margin, 3) << "\n";
   for (const MissingEvidence& missing : a.missing)
     if (a.is_accepted(missing.item)) out << "Accepted (" << name_of(missing.item) << "): " << missing.reason << "\n";
   for (std::size_t i = 0; i < a.tests.size() && i < k_shown_sentences; ++i) out << (i == 0 ? "Tests: " : "  ") << a.tests[i] << "\n";
