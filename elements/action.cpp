@@ -254,7 +254,7 @@ void compile_action(const Element& element, SystemBuilder& builder) {
   ActionGroup& group = builder.group<ActionGroup>();
   if (!group.model) {
     group.model = std::make_shared<Model>(builder.model());
-    group.channels = builder.wanted_channels();
+    group.channels = builder.requested_channel_names();
   }
   std::optional<ActionGroup::ElementData> entry = ActionReader(static_cast<const Action&>(element), builder).entry();
   if (!entry) return;

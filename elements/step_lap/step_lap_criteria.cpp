@@ -111,7 +111,7 @@ void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& c
 // Returns the message for a joint that sticks beyond its capacity; empty for others. This occurs with methods that do not locate events or
 // step over a storm of events. It is then unknown whether the joint slips.
 std::string contradiction_of(const JointAssessment& joint, const SimulationSettings& settings) {
-  const char* does = joint.contradicts_itself() ? "holds" : joint.bears_too_much() ? "slides" : "";
+  const char* does = joint.contradicts_itself() ? "holds" : joint.exceeds_capacity() ? "slides" : "";
   const std::string then = joint.contradicts_itself() ? "it has to slip" : "no element carries the stated load";
   if (*does == '\0') return "";
   return "'" + joint.joint + "' " + does + " with a margin of " + limit_text(joint.smallest_margin) +

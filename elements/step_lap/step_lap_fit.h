@@ -58,17 +58,17 @@ struct StepLapFriction::Scratch final : SlipScratch {
   Region region;
   Fit fits[2];
   Patch spare;
-  Vec3 asked = Vec3::Zero(); ///< wrench of the last usage() at the pose asked_at
-  Pose asked_at;
-  bool was_stuck = false; ///< result of the last usage() came from the prepared patch
-  bool was_known = false; ///< result of the last usage() came from the slip law
+  Vec3 asked = Vec3::Zero(); ///< wrench of the last usage() at the pose usage_pose
+  Pose usage_pose;
+  bool was_from_table = false;    ///< result of the last usage() came from the prepared patch
+  bool was_from_slip_law = false; ///< result of the last usage() came from the slip law
   RequiredPressure answer;
   PressureState pressed;                                   ///< pressures at the last usage()
   double onset_time = k_onset_time, end_time = k_end_time; ///< times to which onset and end of slip are resolved, s
   OverlapLoss lost;                                        ///< loss at the pose lost_at
   Pose lost_at;
   bool is_lost_known = false;
-  std::optional<FlowQuestion> flow_asked; ///< arguments of the last flow evaluation
+  std::optional<FlowQuestion> last_flow_question; ///< arguments of the last flow evaluation
   Flow flow_answer;
 
   void follow(double tolerance) override;

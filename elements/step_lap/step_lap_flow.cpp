@@ -58,7 +58,7 @@ StepLapFriction::Flow StepLapFriction::flow_under(const Evaluation& e, const Pos
   Flow flow;
   const PressureState now = pressure_at(e.t);
   const Fit& f = fit(e.scratch, slid, GripLaw::holding, now.tilt);
-  if (has_let_go(f)) return flow_of_gone(rate);
+  if (has_separated(f)) return flow_of_gone(rate);
   if (!force.allFinite()) return flow;
   const RequiredPressure need = required(f.patch, force / now.factor, e.t);
   const Vec3 n = need.direction, pull = stiffness_ * n;
@@ -109,13 +109,13 @@ Dissipation StepLapFriction::friction_along(const Patch& patch, const Vec3& y, b
 Vec3 StepLapFriction::direction_of(const Evaluation& e, const Pose& slid, const Vec3& force) const {
   const PressureState now = pressure_at(e.t);
   const Fit& f = fit(e.scratch, slid, GripLaw::holding, now.tilt);
-  if (has_let_go(f)) return Vec3::Zero();
+  if (has_separated(f)) return Vec3::Zero();
   return scaled(required(f.patch, force / now.factor, e.t).direction).normalized();
 }
 
 double StepLapFriction::roundness(const Evaluation& e, const Pose& slid, const Vec3& direction) const {
   const Fit& f = fit(e.scratch, slid, GripLaw::holding, pressure_at(e.t).tilt);
-  return has_let_go(f) ? 1.0 : lesser_curvature(friction_along(f.patch, direction.normalized(), true).hessian) / f.patch.force();
+  return has_separated(f) ? 1.0 : lesser_curvature(friction_along(f.patch, direction.normalized(), true).hessian) / f.patch.force();
 }
 
 Vec3 StepLapFriction::bound_along(const Evaluation& e, const Pose& slid, const Vec3& direction) const {
@@ -131,9 +131,9 @@ StepLapFriction::Flow StepLapFriction::flow_along(const Evaluation& e, const Pos
   const PressureState now = pressure_at(e.t);
   auto& own = static_cast<Scratch&>(*e.scratch[index_]);
   const FlowQuestion question{{slid.x, slid.y, slid.theta}, force, direction, rate, now};
-  if (!(own.flow_asked && *own.flow_asked == question)) {
+  if (!(own.last_flow_question && *own.last_flow_question == question)) {
     own.flow_answer = find_flow_along(e, slid, force, direction, rate);
-    own.flow_asked = question;
+    own.last_flow_question = question;
   }
   return own.flow_answer;
 }
@@ -143,7 +143,7 @@ StepLapFriction::Flow StepLapFriction::find_flow_along(const Evaluation& e, cons
   Flow flow;
   const PressureState now = pressure_at(e.t);
   const Fit& f = fit(e.scratch, slid, GripLaw::holding, now.tilt);
-  if (has_let_go(f)) return flow_of_gone(rate);
+  if (has_separated(f)) return flow_of_gone(rate);
   const Vec3 y = direction.normalized(), n = unscaled(y), moving = scaled(rate);
   flow.direction = n;
   const Dissipation d = friction_along(f.patch, y, true);

@@ -224,12 +224,12 @@ double StepLapFriction::spare(const Evaluation& e, const Pose& slid, const Vec3&
   return 1.0 + k_bound_slack - required(f.tabulated(), w, e.t).u;
 }
 
-bool StepLapFriction::has_let_go(const Fit& f) const { return f.patch.force() < 0.5 * k_last_grip * reference_->patch.force(); }
+bool StepLapFriction::has_separated(const Fit& f) const { return f.patch.force() < 0.5 * k_last_grip * reference_->patch.force(); }
 
 double StepLapFriction::yield_usage(const Evaluation& e, const Pose& slid, const Vec3& wrench) const {
   const PressureState now = pressure_at(e.t);
   const Fit& f = fit(e.scratch, slid, GripLaw::holding, now.tilt);
-  if (has_let_go(f)) return 1.0;
+  if (has_separated(f)) return 1.0;
   return required(f.patch, wrench / now.factor, e.t).u;
 }
 
@@ -257,10 +257,10 @@ const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   const PressureState now = pressure_at(s.t);
   // The pose is constant, so expansions (Fit::tabulated()) pay off.
   const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick;
-  const bool is_known = knows_usage(s, w);
-  const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y && own.asked_at.theta == pose.theta &&
-                       own.pressed.factor == now.factor && own.pressed.tilt == now.tilt && own.was_stuck == is_stuck &&
-                       own.was_known == is_known;
+  const bool is_known = has_usage_for(s, w);
+  const bool is_same = own.asked == w && own.usage_pose.x == pose.x && own.usage_pose.y == pose.y && own.usage_pose.theta == pose.theta &&
+                       own.pressed.factor == now.factor && own.pressed.tilt == now.tilt && own.was_from_table == is_stuck &&
+                       own.was_from_slip_law == is_known;
   if (is_same) return own.answer;
   if (is_known) {
     own.answer = usage_of_slip(s, pose);
@@ -269,16 +269,16 @@ const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
     own.answer = required(is_stuck ? f.tabulated() : f.patch, w / now.factor, s.t);
   }
   own.pressed = now;
-  own.was_stuck = is_stuck;
-  own.was_known = is_known;
+  own.was_from_table = is_stuck;
+  own.was_from_slip_law = is_known;
   own.asked = w;
-  own.asked_at = pose;
+  own.usage_pose = pose;
   return own.answer;
 }
 
 ValueBounds StepLapFriction::usage_between(const Snapshot& s) const {
   const Vec3 w = wrench(s);
-  if (knows_usage(s, w)) return {slip_usage_, slip_usage_};
+  if (has_usage_for(s, w)) return {slip_usage_, slip_usage_};
   const PressureState now = pressure_at(s.t);
   Fit& f = fit(s.evaluation->scratch, present(s), GripLaw::holding, now.tilt);
   f.prepare();

@@ -190,14 +190,14 @@ private:
   void add_pressed(const SheetPair& sheets, const Region& region, GripLaw law, double tilt, Patch& patch) const;
   [[noreturn]] void refuse_pressure() const;
   [[nodiscard]] Vec3 gradient_at(const Pose& pose, double tilt, const Vec3& nu, Scratch& own) const;
-  [[nodiscard]] bool has_let_go(const Fit& f) const;
+  [[nodiscard]] bool has_separated(const Fit& f) const;
   struct FlowQuestion;
   [[nodiscard]] Flow find_flow_along(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& direction,
                                      const Vec3& rate) const;
   [[noreturn]] void refuse_snap(double t) const;
   [[nodiscard]] Vec3 unscaled(const Vec3& y) const;
   [[nodiscard]] Dissipation friction_along(const Patch& patch, const Vec3& y, bool with_curvature) const;
-  [[nodiscard]] bool knows_usage(const Snapshot& s, const Vec3& wrench) const;
+  [[nodiscard]] bool has_usage_for(const Snapshot& s, const Vec3& wrench) const;
   [[nodiscard]] RequiredPressure usage_of_slip(const Snapshot& s, const Pose& pose) const;
   [[nodiscard]] double depth_of(std::size_t i, const Pose& pose, OverlapWorkspace& workspace) const;
   void set_direction(FrictionState& state, const Vec3& nu) const;

@@ -196,7 +196,7 @@ bool StepLapFriction::continue_slip(const Evaluation& e, FrictionState& state, c
 
 // Returns true if the utilisation needs no iteration: the wrench of a sliding joint is that of the slip law, on the boundary of the kinetic
 // set. Its ratio to the static boundary and the maximising twist are known.
-bool StepLapFriction::knows_usage(const Snapshot& s, const Vec3& wrench) const {
+bool StepLapFriction::has_usage_for(const Snapshot& s, const Vec3& wrench) const {
   return !is_elastic() && s.evaluation->friction[index_].phase == FrictionPhase::slip && slip_usage_ == slip_usage_ &&
          !wrench.isZero(0.0) && wrench.allFinite();
 }

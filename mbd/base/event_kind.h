@@ -28,14 +28,14 @@ enum class EventKind : std::uint8_t {
   slips,
   slips_forward,
   slips_backward,
-  slips_another_way,
+  changes_slip_direction,
   sticks,
   loses_normal_force,
   changes_foot,
   loses_interface,
   meets_interface,
   storm,
-  storm_over,
+  event_storm_ends,
   happens,
   breaks,
   comes_apart ///< last; add new kinds before it
@@ -60,7 +60,7 @@ using EventKinds = std::bitset<k_event_kinds>;
 /// Returns true if friction starts to slip or the slip changes direction.
 [[nodiscard]] constexpr bool is_slip(EventKind kind) {
   return kind == EventKind::slips || kind == EventKind::slips_forward || kind == EventKind::slips_backward ||
-         kind == EventKind::slips_another_way;
+         kind == EventKind::changes_slip_direction;
 }
 
 /// Returns true for a kink of a force law. The force is continuous there.

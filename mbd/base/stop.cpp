@@ -14,7 +14,7 @@ StopScope::StopScope(const StopQuestion& question) : before_(asked) {
 
 StopScope::~StopScope() { asked = before_; }
 
-void stop_if_asked(const char* where) {
+void throw_if_stopped(const char* where) {
   if (!asked) return;
   if (const std::string why = (*asked)(); !why.empty()) throw RunStopped(why + " " + where + ".");
 }

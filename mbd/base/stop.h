@@ -18,7 +18,7 @@ public:
 /// Function that returns the reason why the computation must stop; "" if it continues.
 using StopQuestion = std::function<std::string()>;
 
-/// While an object of this class exists, stop_if_asked() in the same thread calls `question`, which must outlive the object. If `question`
+/// While an object of this class exists, throw_if_stopped() in the same thread calls `question`, which must outlive the object. If `question`
 /// is empty, that of the enclosing scope remains in use.
 class StopScope {
 public:
@@ -34,6 +34,6 @@ private:
 
 /// Calls the question of the innermost scope and throws RunStopped if it returns a reason. `where` ends the message: "in the search for
 /// rest".
-void stop_if_asked(const char* where);
+void throw_if_stopped(const char* where);
 
 } // namespace steplap

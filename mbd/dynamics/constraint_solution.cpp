@@ -81,7 +81,7 @@ void ConstraintSolution::solve(double t, const BodyForce* force, double* a) {
   double* const right = multiplier_.data();
   take_accelerations(layout.schur_rows.data(), 0, count, a, right);
   if (layout.has_long_rows()) [[unlikely]]
-    take_part_accelerations(a, right);
+    subtract_part_accelerations(a, right);
   if (layout.has_mechanisms()) solve_mechanisms(force, a);
   if (layout.active.empty()) return;
   drive(t);

@@ -74,7 +74,7 @@ private:
   // in `right`, to accelerations, and to J · change.
   void pull_parts();
   void compare_parts();
-  void take_part_accelerations(const double* a, double* right) const;
+  void subtract_part_accelerations(const double* a, double* right) const;
   void add_part_responses(const double* lambda, double* a) const;
   [[nodiscard]] double along_parts(std::size_t row, const double* change) const;
 

@@ -312,7 +312,7 @@ void Dynamics::count_stage(double t, const double* y, const double* dy) {
   StageProgram* const program = stage_programs_.now();
   if (!program) return;
   program->count_stage();
-  if (!program->wants_stage()) return;
+  if (!program->needs_recording()) return;
   const double now = std::min(t, time_cap_);
   take_time_inputs(now, program->time_inputs());
   reactions_.find_joints(cluster_accelerations(dy), multipliers().data());
@@ -365,7 +365,7 @@ bool Dynamics::evaluate_joint_events(const double* dy) {
   kinematics_.complete();
   const double* const cluster_a = cluster_accelerations(dy);
   if (layout_->sharing) {
-    take_solved_friction();
+    store_solved_friction();
     reactions_.find_accelerations(cluster_a); // needed by LoadSharing::discord()
   }
   reactions_.find_joints(cluster_a, multipliers().data());
@@ -390,7 +390,7 @@ Snapshot Dynamics::snapshot(const double* dy) {
   const Layout& layout = *layout_;
   ensure_byproducts();
   kinematics_.complete();
-  if (layout.sharing) take_solved_friction();
+  if (layout.sharing) store_solved_friction();
   const double* const cluster_a = cluster_accelerations(dy);
   const double* const lambda = multipliers().data();
   reactions_.find_accelerations(cluster_a);

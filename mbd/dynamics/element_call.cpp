@@ -72,7 +72,7 @@ std::vector<int> ElementCall::slots_of(const std::vector<char>& is_used) const {
 }
 
 // Passes time and the motions of the marked bodies. Time is always an argument, so that no call has only constant arguments.
-void ElementCall::take_surroundings(const std::vector<char>& is_used, TracedEvaluation& e) {
+void ElementCall::record_surroundings(const std::vector<char>& is_used, TracedEvaluation& e) {
   take(e.record_signal_input({&clock_signal()}), own_.t);
   for (const int slot : slots_of(is_used)) take(e.motion[slot], motion_[static_cast<std::size_t>(slot)]);
   for (std::size_t i = 0; i < inner_.size(); ++i) take(e.inner[i], inner_[i]);
@@ -82,7 +82,7 @@ void ElementCall::trace(const ForceGroup& group, TracedEvaluation& e) {
   group_ = &group;
   std::vector<char> is_used(system_.bodies.size(), 0);
   group.mark_bodies(is_used);
-  take_surroundings(is_used, e);
+  record_surroundings(is_used, e);
   for (const int slot : slots_of(is_used)) {
     if (slot == k_ground) continue;
     BodyForceOf<TapeNumber>& force = e.force[slot];
@@ -130,7 +130,7 @@ void ElementCall::trace(int f, TracedEvaluation& e, const TapeNumber* rate, Tape
   const RowSpec* const rows = friction.rows(e.friction[f]);
   for (int r = 0; r < friction.dimension(); ++r)
     is_used[static_cast<std::size_t>(rows[r].a)] = is_used[static_cast<std::size_t>(rows[r].b)] = 1;
-  take_surroundings(is_used, e);
+  record_surroundings(is_used, e);
   for (std::size_t i = 0; i < arrays_.contact_force.size(); ++i) take(e.contact_force[i], arrays_.contact_force[i]);
   for (int r = 0; r < friction.dimension(); ++r) {
     if (is_sliding_) take(rate[r], rate_[r]);

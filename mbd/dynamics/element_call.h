@@ -40,7 +40,7 @@ private:
   void take(const Motion<TapeNumber>& from, Motion<double>& to);
   void give(TapeNumber& x, const double& place);
   void add_to(TapeNumber& x, double& place);
-  void take_surroundings(const std::vector<char>& is_used, TracedEvaluation& e);
+  void record_surroundings(const std::vector<char>& is_used, TracedEvaluation& e);
   [[nodiscard]] std::vector<int> slots_of(const std::vector<char>& is_used) const;
   [[nodiscard]] std::vector<std::size_t> contacts_of_group();
   void put_down();

@@ -97,7 +97,7 @@ template <class S> struct SlidingRows {
 template <class S> STEPLAP_INLINE void gather_forces(const Layout& layout, const Motion<S>* motion, BodyForceOf<S>* force) {
   for (const ActiveLink& link : layout.links) {
     const BodyForceOf<S>& f = force[link.slot];
-    if (is_surely_zero(f.fx) && is_surely_zero(f.fy) && is_surely_zero(f.m)) continue;
+    if (is_structural_zero(f.fx) && is_structural_zero(f.fy) && is_structural_zero(f.m)) continue;
     add_link_force(f, motion[link.slot], motion[link.b], force[link.a], force[link.b]);
   }
   for (const int i : layout.riding) {

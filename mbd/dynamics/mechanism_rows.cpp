@@ -168,9 +168,9 @@ void Mechanism::keep_rank(double shift) {
   const MechanismWork& w = *work_;
   is_rank_open_ = false;
   if (dependent_count_ == 0 && smallest_pivot_ >= k_doubtful_pivot) return;
-  bool is_in_doubt = smallest_pivot_ < k_doubtful_pivot;
-  for (int r = 0; r < row_count; ++r) is_in_doubt = is_in_doubt || (is_dependent(r) && w.own[r] > 0.0);
-  if (!is_in_doubt) { // the rows left out act on nothing that can move
+  bool is_rank_uncertain = smallest_pivot_ < k_doubtful_pivot;
+  for (int r = 0; r < row_count; ++r) is_rank_uncertain = is_rank_uncertain || (is_dependent(r) && w.own[r] > 0.0);
+  if (!is_rank_uncertain) { // the rows left out act on nothing that can move
     out_.assign(row_count, 0);
     for (int r = 0; r < row_count; ++r) out_[r] = can_stay_out_[r] != 0 && is_dependent(r);
     return;

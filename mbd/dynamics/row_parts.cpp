@@ -19,8 +19,8 @@ void ConstraintSolution::compare_parts() {
   }
 }
 
-void ConstraintSolution::take_part_accelerations(const double* a, double* right) const {
-  steplap::take_part_accelerations(*layout_, layout_->schur_rows.data(), a, right);
+void ConstraintSolution::subtract_part_accelerations(const double* a, double* right) const {
+  steplap::subtract_part_accelerations(*layout_, layout_->schur_rows.data(), a, right);
 }
 
 void ConstraintSolution::add_part_responses(const double* lambda, double* a) const {

@@ -166,7 +166,7 @@ template <class S> void pull_parts(const Layout& layout, const Motion<S>* motion
 }
 
 /// Subtracts the contributions of the further parts of rows to J a from `right`, for the accelerations `a` of the clusters.
-template <class S> void take_part_accelerations(const Layout& layout, const SchurRowOf<S>* rows, const S* a, S* right) {
+template <class S> void subtract_part_accelerations(const Layout& layout, const SchurRowOf<S>* rows, const S* a, S* right) {
   for (const SchurPart& part : layout.parts) right[part.of] = less_accelerations(rows[part.row], right[part.of], a);
 }
 

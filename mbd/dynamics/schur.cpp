@@ -237,7 +237,7 @@ void SchurSolver::decide_rank(const std::vector<char>& is_friction, const std::v
 void SchurSolver::keep_rank(const std::vector<SchurRow>& rows, double shift) {
   is_rank_open_ = false;
   if (dependent_count_ == 0 && smallest_pivot_ >= k_doubtful_pivot) return;
-  if (!is_in_doubt(rows)) { // the rows left out act on nothing that can move
+  if (!is_rank_uncertain(rows)) { // the rows left out act on nothing that can move
     out_.assign(n_, 0);
     for (int r = 0; r < n_; ++r) out_[r] = can_stay_out_[r] != 0 && is_dependent(r);
     return;
@@ -246,7 +246,7 @@ void SchurSolver::keep_rank(const std::vector<SchurRow>& rows, double shift) {
   factor_as_is(rows, shift);
 }
 
-bool SchurSolver::is_in_doubt(const std::vector<SchurRow>& rows) const {
+bool SchurSolver::is_rank_uncertain(const std::vector<SchurRow>& rows) const {
   if (smallest_pivot_ < k_doubtful_pivot) return true;
   for (int r = 0; r < n_; ++r)
     if (is_dependent(r) && squared_length(rows[r]) > 0.0) return true;

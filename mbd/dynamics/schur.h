@@ -149,7 +149,7 @@ private:
   /// Returns true if a row with pivot `d` and diagonal element `diagonal` is left out.
   [[nodiscard]] bool leaves_out(int row, double d, double diagonal) { return is_left_out(row) || !(d > k_pivot_tolerance * diagonal); }
   void keep_rank(const std::vector<SchurRow>& rows, double shift);
-  [[nodiscard]] bool is_in_doubt(const std::vector<SchurRow>& rows) const;
+  [[nodiscard]] bool is_rank_uncertain(const std::vector<SchurRow>& rows) const;
   [[nodiscard]] std::vector<char> dependent_friction(const std::vector<SchurRow>& rows) const;
 
   std::vector<char> can_stay_out_, out_, was_dependent_; ///< per row; empty: none

@@ -30,7 +30,7 @@ bool Dynamics::is_shared(int friction) const {
 }
 
 // Restores the friction forces of the solution in the array, which may contain a reported distribution instead.
-void Dynamics::take_solved_friction() {
+void Dynamics::store_solved_friction() {
   for (std::size_t r = 0; r < layout_->active.size(); ++r) {
     const ActiveRow& row = layout_->active[r];
     if (row.friction >= 0) friction_force_[system_.frictions[row.friction].row + row.friction_row] = multipliers()[r];

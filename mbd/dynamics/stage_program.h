@@ -57,7 +57,7 @@ public:
   [[nodiscard]] double* time_inputs() { return time_inputs_.data(); }
 
   /// Returns true if the modes have persisted so long that the next stage should be recorded.
-  [[nodiscard]] bool wants_stage() const {
+  [[nodiscard]] bool needs_recording() const {
     return !is_hopeless_ && !tape_code_ && (candidate_ || stages_ >= k_settled || choice_ == StageCode::at_once);
   }
   /// Counts a stage evaluated without code.

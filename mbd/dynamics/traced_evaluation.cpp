@@ -175,7 +175,7 @@ private:
   void solve_rows(double least_pivot) {
     const auto of_absolute = static_cast<std::size_t>(layout_.schur.size());
     take_accelerations(rows_.data(), 0, of_absolute, a_.data(), multiplier_.data());
-    take_part_accelerations(layout_, rows_.data(), a_.data(), multiplier_.data());
+    subtract_part_accelerations(layout_, rows_.data(), a_.data(), multiplier_.data());
     for (TracedMechanism& m : mechanisms_) accelerate(m);
     for (std::size_t i = 0; i < layout_.driven_rows.size(); ++i) multiplier_[layout_.driven_rows[i]] += of_driven_row(i)[0];
     if (rows_.empty()) return;

@@ -196,7 +196,7 @@ bool turns_against_lock(const System& system, const State& state) {
   return false;
 }
 
-void take_blow(const System& system, Dynamics& dynamics, State& state) {
+void apply_impact(const System& system, Dynamics& dynamics, State& state) {
   ImpactElements struck = struck_in(system, state);
   if (struck.elements.empty()) return;
   State after = state;
@@ -238,13 +238,13 @@ void close_rows(const System& system, Dynamics& dynamics, State& state) {
   book_blow(system, true, after, state);
 }
 
-bool was_struck(const System& system, std::size_t f, const std::vector<Impact>& before, const State& state) {
+bool had_impact(const System& system, std::size_t f, const std::vector<Impact>& before, const State& state) {
   const int impact = impact_index(system.frictions[f]);
   return impact >= 0 && before[impact].lost != state.impacts[impact].lost;
 }
 
-std::string blow_text(const System& system, std::size_t f, const std::vector<Impact>& before, const State& state) {
-  if (!was_struck(system, f, before, state)) return {};
+std::string impact_text(const System& system, std::size_t f, const std::vector<Impact>& before, const State& state) {
+  if (!had_impact(system, f, before, state)) return {};
   const FrictionUnit& unit = system.frictions[f];
   const int impact = impact_index(unit);
   return "with " + rounded_text(state.impacts[impact].impulse, 4) + (unit.rope ? " N s, " : " N m s, ") +

@@ -21,25 +21,25 @@
 namespace steplap {
 
 /// Sets the phases of ropes at the start of a run: taut if they are at their length and do not shorten, otherwise slack. Returns true if a
-/// taut rope lengthens, which requires take_blow(). Throws ElementFailure if the ends of a rope are further apart than its length.
+/// taut rope lengthens, which requires apply_impact(). Throws ElementFailure if the ends of a rope are further apart than its length.
 [[nodiscard]] bool set_ropes(const System& system, State& state);
 
 /// Computes the impact of ropes and clutches at `state`. Changes velocities, phases of ropes and of clutches that lock, impacts, dissipated
 /// energy and work. Other phases stay unchanged; the caller decides them from the new velocities. Throws ElementFailure if the impulses
 /// cannot be determined or drives turn a clutch against its lock.
-void take_blow(const System& system, Dynamics& dynamics, State& state);
+void apply_impact(const System& system, Dynamics& dynamics, State& state);
 
-/// Returns true if the bodies of some clutch turn against its lock with a rate above rounding. This requires take_blow().
+/// Returns true if the bodies of some clutch turn against its lock with a rate above rounding. This requires apply_impact().
 [[nodiscard]] bool turns_against_lock(const System& system, const State& state);
 
 /// Computes the impact of joints and drives that become active: their rates jump to the prescribed ones with the least change of velocities
-/// in the metric of kinetic energy, Δv = −M⁻¹Jᵀ(J M⁻¹ Jᵀ)⁻¹(Jv − target). Friction, ropes and clutches have no impulse; call take_blow()
+/// in the metric of kinetic energy, Δv = −M⁻¹Jᵀ(J M⁻¹ Jᵀ)⁻¹(Jv − target). Friction, ropes and clutches have no impulse; call apply_impact()
 /// afterwards. The energy ½ Δvᵀ M Δv is dissipated; the rest of the change of energy is work of moving drives.
 void close_rows(const System& system, Dynamics& dynamics, State& state);
 
 /// Impact of the rope or clutch `friction` since the impacts were `before`: whether there was one, and its impulse and energy loss as text
 /// (empty if none).
-[[nodiscard]] bool was_struck(const System& system, std::size_t friction, const std::vector<Impact>& before, const State& state);
-[[nodiscard]] std::string blow_text(const System& system, std::size_t friction, const std::vector<Impact>& before, const State& state);
+[[nodiscard]] bool had_impact(const System& system, std::size_t friction, const std::vector<Impact>& before, const State& state);
+[[nodiscard]] std::string impact_text(const System& system, std::size_t friction, const std::vector<Impact>& before, const State& state);
 
 } // namespace steplap

@@ -22,7 +22,7 @@ struct Event {
 };
 
 /// Rigid impact in which an element took part. Its impulse is known; a force does not exist.
-struct RigidBlow {
+struct RigidImpact {
   double t = 0.0; ///< time, s
   std::string element;
 };

@@ -90,7 +90,7 @@ EventFinder::Screening EventFinder::screen(Integrator& integrator, const Dynamic
       if (!is_plain) surveyed_slots_.push_back(i);
       continue;
     }
-    if (nodes.is_surely_positive(watched)) continue;
+    if (nodes.is_proven_positive(watched)) continue;
     surveyed_slots_.push_back(i);
     worst = Screening::inside;
   }

@@ -168,7 +168,7 @@ void EventHandler::start(State& state) {
   begin_units(state);
   const bool is_any_tight = set_ropes(system_, state);
   if (is_any_tight || turns_against_lock(system_, state)) {
-    take_blow(system_, dynamics_, state);
+    apply_impact(system_, dynamics_, state);
     record_blows(system_.initial_impacts, state);
     modes_.evaluate(state);
     begin_units(state); // impact changes velocities, on which the initial modes of dampers and formulas depend
@@ -310,7 +310,7 @@ bool EventHandler::is_same_direction(std::size_t f, const FrictionState& a, cons
 
 EventKind EventHandler::slip_kind(std::size_t f, const FrictionState& old, const FrictionState& now) const {
   if (system_.frictions[f].friction->dimension() == 1) return now.sign > 0 ? EventKind::slips_forward : EventKind::slips_backward;
-  return old.phase == FrictionPhase::slip ? EventKind::slips_another_way : EventKind::slips;
+  return old.phase == FrictionPhase::slip ? EventKind::changes_slip_direction : EventKind::slips;
 }
 
 // Returns true if the support function is positive in some direction, that is, sliding meets resistance.
@@ -332,10 +332,10 @@ void EventHandler::note_start(const State& state, std::vector<Event>& events) co
     if (state.friction[f].phase == FrictionPhase::slip && has_capacity(state, f))
       events.push_back({state.t, system_.element_names[system_.frictions[f].element], slip_kind(f, {}, state.friction[f])});
   for (std::size_t f = 0; f < state.friction.size(); ++f)
-    if (was_struck(system_, f, system_.initial_impacts, state))
+    if (had_impact(system_, f, system_.initial_impacts, state))
       events.push_back({state.t, system_.element_names[system_.frictions[f].element],
                         system_.frictions[f].rope ? EventKind::closes_gap : EventKind::sticks,
-                        blow_text(system_, f, system_.initial_impacts, state)});
+                        impact_text(system_, f, system_.initial_impacts, state)});
 }
 
 namespace {
@@ -346,8 +346,8 @@ void note_rope(const System& system, const OneSidedUnit& unit, FrictionPhase pha
   const OneSidedRow& rope = *unit.row;
   const std::string& name = system.element_names[rope.row.element];
   const bool was_taut = phase_before == FrictionPhase::stick, is_taut = state.friction[unit.friction].phase == FrictionPhase::stick;
-  const bool is_caught = !was_taut && (is_taut || was_struck(system, unit.friction, impacts_before, state));
-  if (is_caught) events.push_back({state.t, name, EventKind::closes_gap, blow_text(system, unit.friction, impacts_before, state)});
+  const bool is_caught = !was_taut && (is_taut || had_impact(system, unit.friction, impacts_before, state));
+  if (is_caught) events.push_back({state.t, name, EventKind::closes_gap, impact_text(system, unit.friction, impacts_before, state)});
   if ((was_taut || is_caught) && !is_taut) events.push_back({state.t, name, EventKind::enters_gap});
 }
 
@@ -400,7 +400,7 @@ bool EventHandler::list_friction_change(std::size_t f, const FrictionState& old,
   case FrictionPhase::slip: kind = slip_kind(f, old, now); break;
   case FrictionPhase::apart: kind = EventKind::comes_apart; break;
   }
-  events.push_back({state.t, name, kind, kind == EventKind::sticks ? blow_text(system_, f, impacts_before, state) : std::string()});
+  events.push_back({state.t, name, kind, kind == EventKind::sticks ? impact_text(system_, f, impacts_before, state) : std::string()});
   if (now.phase == FrictionPhase::apart && unit.friction->stops_when_apart()) stop_reason_ = "'" + name + "' came apart";
   return true;
 }
@@ -509,7 +509,7 @@ void EventHandler::strike(EventTransaction& event, Blow blow) {
     evaluate_separated_joint_events(system_, state, event_value);
     close_rows(system_, dynamics_, state);
   }
-  take_blow(system_, dynamics_, state);
+  apply_impact(system_, dynamics_, state);
   event.velocities_changed();
   modes_.evaluate(state);
   std::fill(event.has_switched.begin(), event.has_switched.end(), 0);
@@ -601,7 +601,7 @@ void EventHandler::meet_new_rows(EventTransaction& event) {
 
 void EventHandler::record_blows(const std::vector<Impact>& impacts_before, const State& state) {
   for (std::size_t f = 0; f < system_.frictions.size(); ++f)
-    if (was_struck(system_, f, impacts_before, state)) blows_.push_back({state.t, system_.element_names[system_.frictions[f].element]});
+    if (had_impact(system_, f, impacts_before, state)) blows_.push_back({state.t, system_.element_names[system_.frictions[f].element]});
 }
 
 // Records pairs of which one element began to slip while the other stuck close to its bound. Ropes and locked clutches have no bound and

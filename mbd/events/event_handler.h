@@ -53,7 +53,7 @@ public:
   [[nodiscard]] const std::vector<SimultaneousSlip>& ties() const { return ties_; }
   static constexpr double k_near_bound = 1e-3;
   /// Returns the ropes and clutches with an impulse in the last start(), handle() or take_over().
-  [[nodiscard]] const std::vector<RigidBlow>& blows() const { return blows_; }
+  [[nodiscard]] const std::vector<RigidImpact>& blows() const { return blows_; }
   void clear_fresh() { std::fill(fresh_.begin(), fresh_.end(), 0); }
 
 private:
@@ -109,7 +109,7 @@ private:
   double settled_ = 0.0;
   std::vector<double> y_, dy_;
   std::vector<SimultaneousSlip> ties_;
-  std::vector<RigidBlow> blows_;
+  std::vector<RigidImpact> blows_;
 };
 
 } // namespace steplap

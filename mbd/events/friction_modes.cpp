@@ -215,11 +215,11 @@ void FrictionModes::evaluate(const State& state) {
 
 std::vector<int> FrictionModes::violated(const State& state) {
   evaluate(state);
-  return held_beyond(state);
+  return sticking_beyond_bound(state);
 }
 
 // Returns the sticking elements with a negative event function at the last evaluation.
-std::vector<int> FrictionModes::held_beyond(const State& state) const {
+std::vector<int> FrictionModes::sticking_beyond_bound(const State& state) const {
   std::vector<int> result;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     if (state.friction[f].phase != FrictionPhase::stick) continue;
@@ -341,7 +341,7 @@ bool FrictionModes::catch_reversals(State& state, const std::vector<FrictionStat
 }
 
 // Handles groups whose rows are no longer compatible: releases the elements that move, in the direction of their motion.
-void FrictionModes::let_go_moving(State& state) {
+void FrictionModes::release_moving(State& state) {
   bool is_any = false;
   const LoadSharing* const sharing = dynamics_.sharing();
   if (!sharing) return;
@@ -375,10 +375,10 @@ void FrictionModes::anchor_resting(State& state) const {
 
 bool FrictionModes::decide(State& state) {
   if (!is_evaluated_) evaluate(state);
-  std::vector<int> candidates = held_beyond(state);
+  std::vector<int> candidates = sticking_beyond_bound(state);
   if (candidates.empty()) return true;
   anchor_resting(state);
-  let_go_moving(state);
+  release_moving(state);
   candidates = violated(state);
   if (!candidates.empty()) {
     settle_candidates(state, std::move(candidates));

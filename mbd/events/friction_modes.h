@@ -59,10 +59,10 @@ public:
 
 private:
   [[nodiscard]] std::vector<int> violated(const State& state);
-  [[nodiscard]] std::vector<int> held_beyond(const State& state) const;
+  [[nodiscard]] std::vector<int> sticking_beyond_bound(const State& state) const;
   void solve(State& state, const std::vector<int>& candidates);
   void anchor_resting(State& state) const;
-  void let_go_moving(State& state);
+  void release_moving(State& state);
   void settle_candidates(State& state, std::vector<int> candidates);
   [[nodiscard]] bool release_overloaded(State& state) const;
   [[nodiscard]] bool is_at_rest(const State& state, int f) const;

@@ -140,7 +140,7 @@ bool EventNodes::Curve::falls_once_in(int gap) const {
   return w[gap] - w[gap + 1] > 0.5 * bound(gap) * g * g || bend[gap] * bend[gap + 1] > 0.0;
 }
 
-bool EventNodes::is_surely_positive(const EventStep& watched) const {
+bool EventNodes::is_proven_positive(const EventStep& watched) const {
   const Curve c = curve_of(watched);
   if (!(c.w[0] >= 0.0 && c.w[c.last] >= 0.0) || !tells_bend(c)) return false;
   for (int j = 1; j < c.last; ++j)

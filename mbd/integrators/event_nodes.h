@@ -50,7 +50,7 @@ public:
   [[nodiscard]] double low(int slot) const { return low_[slot]; }
   [[nodiscard]] double high(int slot) const { return high_[slot]; }
   /// Returns true if the function is certainly positive in the step, except at the ends themselves.
-  [[nodiscard]] bool is_surely_positive(const EventStep& watched) const;
+  [[nodiscard]] bool is_proven_positive(const EventStep& watched) const;
   /// Returns true if the function certainly has exactly one root up to the first node where it is negative. Precondition: positive at the
   /// start and negative at the end.
   [[nodiscard]] bool crosses_once(const EventStep& watched) const;

@@ -141,10 +141,10 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
     }
     const bool is_end_accurate = error <= 1.0;
     double inside = 0.0;
-    if (is_end_accurate && !is_last && passage.wants_other_end()) h = rejected(SingularPassage::k_shorter_end);
+    if (is_end_accurate && !is_last && passage.needs_other_end()) h = rejected(SingularPassage::k_shorter_end);
     else if (is_end_accurate && !try_finish_step(dynamics)) h = rejected(k_shorter);
     else if (is_end_accurate && accept_inside(dynamics, h, error, is_retry, inside)) return;
-    else if (inside <= 1.0 && passage.wants_other_stages()) h = rejected(SingularPassage::k_shorter_across);
+    else if (inside <= 1.0 && passage.needs_other_stages()) h = rejected(SingularPassage::k_shorter_across);
     else refuse_shorter_than_rounding(h = rejected(shorter(std::max(error, inside))));
   }
 }

@@ -91,7 +91,7 @@ template <auto Coefficient, std::size_t Count, class F> inline void for_sums(con
 }
 
 /// Functor that leaves the sum unchanged.
-struct AsItIs {
+struct UnchangedSum {
   template <class S> STEPLAP_INLINE void operator()(int, S&) const {}
 };
 
@@ -109,7 +109,7 @@ inline void combine(const double* __restrict y, double h, const double* __restri
 /// out = Σ_j w_j k_j.
 template <const auto& Weights, std::size_t Count>
 inline void weighted_sum(const double* __restrict k, int stride, int n, double* __restrict out) {
-  for_sums<[](std::size_t j) { return Weights[j]; }, Count>(k, stride, n, out, AsItIs{});
+  for_sums<[](std::size_t j) { return Weights[j]; }, Count>(k, stride, n, out, UnchangedSum{});
 }
 
 /// out = h Σ_j w_j k_j with one row of an array. (clang 14 does not accept the row itself as template argument.)

@@ -54,7 +54,9 @@ public:
   /// withdrawn, and the next step() makes a shorter one.
   [[nodiscard]] virtual bool resolves_slips(Dynamics& dynamics, double theta, const double* y);
   /// Returns the fraction of the step in which all rotations stay within their limits (turn_limit.h); 1 for the whole step.
-  [[nodiscard]] double turns_kept(const Dynamics& dynamics) { return turn_limit_.kept(dynamics.layout(), y0_.data(), y1_.data()); }
+  [[nodiscard]] double fraction_within_turn_limits(const Dynamics& dynamics) {
+    return turn_limit_.kept(dynamics.layout(), y0_.data(), y1_.data());
+  }
   /// Withdraws the last step; the next step() attempts `share` of its length. Returns false if the method cannot withdraw steps.
   [[nodiscard]] virtual bool shorten(Dynamics& dynamics, double share) { return withdraw(dynamics, share * h_); }
   /// Sets an upper limit of the step length, s. Simulation updates it whenever the harmonics of loads and drives change.

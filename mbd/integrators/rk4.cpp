@@ -37,7 +37,7 @@ public:
     h_ = is_last ? left : part_;
     t1_ = is_last ? t_limit : t0_ + h_;
     double share = 1.0;
-    while (!try_step(dynamics) || (share = turns_kept(dynamics)) < 1.0) {
+    while (!try_step(dynamics) || (share = fraction_within_turn_limits(dynamics)) < 1.0) {
       ++rejections_;
       h_ *= share < 1.0 ? share : 0.5;
       if (share < 1.0) note_divided(h_);

@@ -19,9 +19,9 @@ public:
   void begin_try() { dynamics_.reset_least_pivot(); }
   /// To be called after an acceptable attempt: returns true if the step should end elsewhere, because its end is too near the singular
   /// position.
-  [[nodiscard]] bool wants_other_end() { return !begins_near_ && other_ends_ < k_max_other_ends && is_near() && ++other_ends_ > 0; }
+  [[nodiscard]] bool needs_other_end() { return !begins_near_ && other_ends_ < k_max_other_ends && is_near() && ++other_ends_ > 0; }
   /// To be called after a rejected attempt: returns true if it should be repeated, because a stage came too near the singular position.
-  [[nodiscard]] bool wants_other_stages() {
+  [[nodiscard]] bool needs_other_stages() {
     return dynamics_.least_pivot() < k_close_pivot && tries_across_ < k_max_tries_across && ++tries_across_ > 0;
   }
 

@@ -88,7 +88,7 @@ bool SparseLu::factor() {
   if (!is_known_) analyze();
   for (const double value : values_)
     if (!std::isfinite(value)) return false;
-  return (has_pivots_ && refactor()) || factor_anew();
+  return (has_pivots_ && refactor()) || factor_with_pivoting();
 }
 
 // Depth-first search: puts the rows of L reached from `row` into found_, in topological order, from index `top` downwards.
@@ -124,7 +124,7 @@ int SparseLu::reach(int column) {
   return top;
 }
 
-bool SparseLu::factor_anew() {
+bool SparseLu::factor_with_pivoting() {
   has_pivots_ = has_transposed_ = false;
   std::fill(position_.begin(), position_.end(), -1);
   std::fill(work_.begin(), work_.end(), 0.0);

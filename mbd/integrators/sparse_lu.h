@@ -69,7 +69,7 @@ private:
   void add_unknown(std::size_t k, int row, int column, double value);
   void analyze();
   [[nodiscard]] bool refactor();
-  [[nodiscard]] bool factor_anew();
+  [[nodiscard]] bool factor_with_pivoting();
   [[nodiscard]] int reach(int column);
   void visit(int row, int& top);
 

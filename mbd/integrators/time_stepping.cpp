@@ -88,7 +88,7 @@ void TimeStepping::step(Dynamics& dynamics, State& state, double t1, double tole
     const bool is_last = left <= part * (1.0 + k_whole);
     const double h = is_last ? left : std::min(part, 0.5 * left), end = is_last ? t1 : state.t + h;
     start_ = state;
-    Trouble trouble;
+    StepFailure trouble;
     try {
       trouble = try_part(dynamics, state, end, tolerance);
     } catch (const ConstraintFailure&) {
@@ -119,7 +119,7 @@ void TimeStepping::step(Dynamics& dynamics, State& state, double t1, double tole
   }
 }
 
-void TimeStepping::fail(const Trouble& trouble, double t, double h) const {
+void TimeStepping::fail(const StepFailure& trouble, double t, double h) const {
   std::string message =
       "a time step at t = " + number_text(t) + " s, halved down to " + number_text(h) + " s, has no consistent end: " + trouble.what;
   if (trouble.element >= 0)
@@ -149,7 +149,7 @@ void TimeStepping::move(Dynamics& dynamics, double t1, double tolerance) {
 }
 
 // Iterates friction together with the normal forces and velocities at the end of the step.
-TimeStepping::Trouble TimeStepping::settle_forces(Dynamics& dynamics, double t1, double tolerance) {
+TimeStepping::StepFailure TimeStepping::settle_forces(Dynamics& dynamics, double t1, double tolerance) {
   move(dynamics, t1, tolerance);
   double change = 0.0;
   int worst = 0;
@@ -158,7 +158,7 @@ TimeStepping::Trouble TimeStepping::settle_forces(Dynamics& dynamics, double t1,
     if (pass >= k_passes_repeated) couple_bounds(dynamics, t1, tolerance);
     before_ = wrench_;
     free_rates(dynamics, tolerance);
-    if (const Trouble trouble = balance_friction(dynamics, pass >= k_passes_static); trouble.what) return trouble;
+    if (const StepFailure trouble = balance_friction(dynamics, pass >= k_passes_static); trouble.what) return trouble;
     if (pass >= k_passes_in_full && !is_coupled_)
       for (int r = 0; r < rows_; ++r) wrench_[r] = 0.5 * (before_[r] + wrench_[r]);
     move(dynamics, t1, tolerance);
@@ -205,7 +205,7 @@ int TimeStepping::passed_unit(const Dynamics& dynamics, const State& state, doub
 }
 
 // Computes the part from start_ to t1. Results: y1_ and the modes in `state`.
-TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, double t1, double tolerance) {
+TimeStepping::StepFailure TimeStepping::try_part(Dynamics& dynamics, State& state, double t1, double tolerance) {
   const double h = t1 - state.t;
   for (std::size_t f = 0; f < state.friction.size(); ++f)
     if (state.friction[f].phase != FrictionPhase::apart && !system_.frictions[f].friction->never_slips())
@@ -218,7 +218,7 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
   start_event_derivative_ = dynamics.event_derivative();
   collect_friction(dynamics, state);
   dynamics.set_state(state);
-  Trouble trouble;
+  StepFailure trouble;
   for (int pass = 0; pass < k_max_mode_passes; ++pass) {
     {
       const Means means(dynamics, time_of_loads(glance_ > 0.0 ? t1 - glance_ : start_.t));

@@ -82,7 +82,7 @@ private:
     [[nodiscard]] double compliance(int i) const { return own[i * (dimension + 1)]; } ///< diagonal entry for row i
   };
   /// Reason why a step cannot be made.
-  struct Trouble {
+  struct StepFailure {
     const char* what = nullptr; ///< text; null: the step is possible
     int element = -1;
     double residual = 0.0;
@@ -102,11 +102,11 @@ private:
   [[nodiscard]] double time_of_loads(double t) const { return std::isnan(held_time_) ? t : held_time_; }
   [[nodiscard]] bool is_rounding(double t0, double t1) const;
   void drift(Dynamics& dynamics, State& state, double t1);
-  [[nodiscard]] Trouble try_part(Dynamics& dynamics, State& state, double t1, double tolerance);
-  [[nodiscard]] Trouble settle_forces(Dynamics& dynamics, double t1, double tolerance);
+  [[nodiscard]] StepFailure try_part(Dynamics& dynamics, State& state, double t1, double tolerance);
+  [[nodiscard]] StepFailure settle_forces(Dynamics& dynamics, double t1, double tolerance);
   void evaluate(Dynamics& dynamics, double t, const double* y);
   void move(Dynamics& dynamics, double t1, double tolerance);
-  [[noreturn]] void fail(const Trouble& trouble, double t, double h) const;
+  [[noreturn]] void fail(const StepFailure& trouble, double t, double h) const;
   [[nodiscard]] int changed_unit(Dynamics& dynamics, State& state);
   [[nodiscard]] int passed_unit(const Dynamics& dynamics, const State& state, double h) const;
   void finish_phases(Dynamics& dynamics, State& state, double h);
@@ -122,7 +122,7 @@ private:
   void respond(Dynamics& dynamics, double h);
   void find_driven(FrictionPart& part, double h);
   void free_rates(Dynamics& dynamics, double tolerance);
-  [[nodiscard]] Trouble settle_wrenches(Dynamics& dynamics, double& change);
+  [[nodiscard]] StepFailure settle_wrenches(Dynamics& dynamics, double& change);
   [[nodiscard]] double sweep(Dynamics& dynamics, int& worst);
   [[nodiscard]] BlockSolution solve_part(const Evaluation& e, const FrictionPart& part) const;
   [[nodiscard]] BlockSolution solve_coupled(const FrictionPart& part, double a, double b) const;
@@ -147,7 +147,7 @@ private:
   void stop_at_rest(double change);
   // defined in time_stepping_modes.cpp
   [[nodiscard]] bool slid_before(int f) const;
-  [[nodiscard]] Trouble balance_friction(Dynamics& dynamics, bool keeps_kinetic);
+  [[nodiscard]] StepFailure balance_friction(Dynamics& dynamics, bool keeps_kinetic);
   [[nodiscard]] bool turns_round(const FrictionPart& part) const;
   [[nodiscard]] bool return_turned();
   void return_stopped(const Evaluation& e);

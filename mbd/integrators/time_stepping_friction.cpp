@@ -494,7 +494,7 @@ void TimeStepping::stop_at_rest(double change) {
 }
 
 // Block Gauss–Seidel iteration: solves each element for the present wrenches of the others, with fixed static or kinetic coefficients.
-TimeStepping::Trouble TimeStepping::settle_wrenches(Dynamics& dynamics, double& change) {
+TimeStepping::StepFailure TimeStepping::settle_wrenches(Dynamics& dynamics, double& change) {
   int worst = 0;
   for (int i = 0; i < k_max_sweeps; ++i) {
     change = sweep(dynamics, worst);

@@ -45,7 +45,7 @@ bool has_one_set(const BoundedFriction& element, const Evaluation& e, const Fric
 bool TimeStepping::slid_before(int f) const { return keeps_sliding_ && start_.friction[f].phase == FrictionPhase::slip; }
 
 // `keeps_kinetic`: continues with the coefficients of the last call; elements then only change to kinetic.
-TimeStepping::Trouble TimeStepping::balance_friction(Dynamics& dynamics, bool keeps_kinetic) {
+TimeStepping::StepFailure TimeStepping::balance_friction(Dynamics& dynamics, bool keeps_kinetic) {
   const Evaluation& e = dynamics.evaluation();
   for (FrictionPart& part : parts_) {
     part.is_kinetic = keeps_kinetic ? part.is_kinetic : part.has_slid;
@@ -55,7 +55,7 @@ TimeStepping::Trouble TimeStepping::balance_friction(Dynamics& dynamics, bool ke
   bool only_grows = keeps_kinetic;
   for (;;) {
     double change = 0.0;
-    if (const Trouble trouble = settle_wrenches(dynamics, change); trouble.what) return trouble;
+    if (const StepFailure trouble = settle_wrenches(dynamics, change); trouble.what) return trouble;
     note_tried();
     bool is_changed = false;
     if (!only_grows) {

@@ -53,7 +53,7 @@ public:
   }
 
   // Merges `over` into `base`. Returns false if `over` removes the entry.
-  bool lay_over(Node& base, Node& over, const std::string& array) {
+  bool merge_entry(Node& base, Node& over, const std::string& array) {
     if (take_flag(over, "remove")) return false;
     merge_table(base, over, array + " '" + entry_name(over) + "'");
     return true;
@@ -313,8 +313,8 @@ Document load_document(const std::string& path) { return Loader().load(read_laye
 
 Document parse_document(std::string text, const std::string& file_name) { return Loader().load(std::move(text), file_name); }
 
-bool lay_over(Node& base, Node over, const std::string& array, std::vector<Diagnostic>& problems) {
-  return Merger(problems).lay_over(base, over, array);
+bool merge_entry(Node& base, Node over, const std::string& array, std::vector<Diagnostic>& problems) {
+  return Merger(problems).merge_entry(base, over, array);
 }
 
 Node load_into(Document& document, const std::string& path, const Location& where) {

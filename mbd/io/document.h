@@ -51,7 +51,7 @@ struct Document {
 /// like load_document(), at `where` if the file cannot be read.
 [[nodiscard]] Node load_into(Document& document, const std::string& path, const Location& where);
 /// Merges the entry `over` of [[array]] into the inherited entry `base` of the same name. Returns false if `over` says `remove = true`.
-[[nodiscard]] bool lay_over(Node& base, Node over, const std::string& array, std::vector<Diagnostic>& problems);
+[[nodiscard]] bool merge_entry(Node& base, Node over, const std::string& array, std::vector<Diagnostic>& problems);
 /// Returns the text of the file and of all files that it extends, each after a line with its name.
 [[nodiscard]] std::string model_source_text(const std::string& path);
 

@@ -175,7 +175,7 @@ std::string report_unknown(const Node& child, const FieldTable& fields, const Ta
 
 // Reads a value. The unit of some fields depends on other fields of `object`, which must have been read before.
 FieldValue read_value(const Node& child, const FieldTable& fields, const Field& field, const void* object, const TableReading& reading) {
-  if (!hangs_on_others(field)) return ValueReader(field, reading).read(child);
+  if (!depends_on_other_fields(field)) return ValueReader(field, reading).read(child);
   Field own = field;
   own.unit = unit_in(fields, field, object);
   return ValueReader(own, reading).read(child);
@@ -254,7 +254,7 @@ std::vector<GivenField> read_fields(const Node& table, const FieldTable& fields,
   for (const Node& child : table.children) {
     const Field* field = fields.find(child.key);
     if (!field) field = renamed_field(table, child, fields, reading, problems);
-    if (field && hangs_on_others(*field)) later.emplace_back(&child, field);
+    if (field && depends_on_other_fields(*field)) later.emplace_back(&child, field);
     else if (field) given.push_back(read_field(child, fields, *field, object, reading, problems));
     else if (!fields.find_earlier(child.key) &&
              std::find(reading.known_keys.begin(), reading.known_keys.end(), child.key) == reading.known_keys.end())

@@ -169,7 +169,7 @@ std::vector<KindChannel> channels_of_kind(const Catalogue& catalogue, const Elem
 
 std::vector<KindChannel> channels_of_bodies(const Catalogue& catalogue) { return channels_in_scene(catalogue, "a"); }
 std::vector<KindChannel> channels_of_markers(const Catalogue& catalogue) { return channels_in_scene(catalogue, "M"); }
-std::vector<KindChannel> channels_of_whole(const Catalogue& catalogue) { return channels_in_scene(catalogue, "whole"); }
+std::vector<KindChannel> channels_of_model(const Catalogue& catalogue) { return channels_in_scene(catalogue, "whole"); }
 
 std::string example_model(const ElementKind& kind) { return k_scene + kind.example; }
 

@@ -18,7 +18,7 @@ struct KindChannel {
 /// Returns the channels of bodies. The functions below return optional channels of markers and of the whole model.
 [[nodiscard]] std::vector<KindChannel> channels_of_bodies(const Catalogue& catalogue);
 [[nodiscard]] std::vector<KindChannel> channels_of_markers(const Catalogue& catalogue);
-[[nodiscard]] std::vector<KindChannel> channels_of_whole(const Catalogue& catalogue);
+[[nodiscard]] std::vector<KindChannel> channels_of_model(const Catalogue& catalogue);
 
 /// Returns a complete model in TOML: two boxes 'a' and 'b' with the example of the kind.
 [[nodiscard]] std::string example_model(const ElementKind& kind);

@@ -129,7 +129,7 @@ void ParametersReader::read_entry(const Node& entry) {
   parameter.where = entry.where();
   double value = 0.0;
   const std::size_t before = problems_.size();
-  turns_.push_back(Turns::none);
+  turns_.push_back(AngleUnit::none);
   if (!is_name(entry.key))
     add(entry.where_key(),
         "a parameter's name has letters, digits and _, does not begin with a digit, and is neither 'pi' nor 't'; got '" + entry.key + "'");
@@ -185,10 +185,10 @@ void ParametersReader::read_value(const Node& node, Parameter& parameter, double
   value = quantity.value;
   parameter.powers = *powers;
   if (*powers != std::array<double, 3>{0.0, 0.0, -1.0}) return;
-  if (contains(parameter.text, "Hz") || contains(parameter.text, "hertz")) turns_.back() = Turns::turns;
+  if (contains(parameter.text, "Hz") || contains(parameter.text, "hertz")) turns_.back() = AngleUnit::turns;
   else if (contains(parameter.text, "rad") || contains(parameter.text, "rpm") || contains(parameter.text, "rev") ||
            contains(parameter.text, "deg"))
-    turns_.back() = Turns::radians;
+    turns_.back() = AngleUnit::radians;
 }
 
 // Reads a range. Its ends must have the unit of the parameter's value, which check_ranges() checks later.
@@ -204,7 +204,7 @@ void ParametersReader::read_range(const Node& range, Parameter& parameter) {
     read.name = parameter.name;
     double value = 0.0;
     const std::size_t before = problems_.size();
-    const Turns turns = turns_.back();
+    const AngleUnit turns = turns_.back();
     read_value(end, read, value);
     turns_.back() = turns;
     if (problems_.size() != before) return;
@@ -259,7 +259,7 @@ bool ParametersReader::resolve(std::size_t index, std::vector<std::size_t>& chai
     return false;
   }
   for (const std::size_t k : parameter.formula->of)
-    if (turns_[k] != Turns::none) turns_[index] = turns_[k];
+    if (turns_[k] != AngleUnit::none) turns_[index] = turns_[k];
   try {
     parameter.powers = dimension_exponents(*parameter.formula);
     parameters_.values[index] = parameter.formula->value(parameters_.values);
@@ -283,13 +283,13 @@ void ParametersReader::check_ranges() {
 
 // Returns an error if the formula mixes turns and radians: both are 1/s, but 10 rad/s is not a frequency of 10 Hz. "" if it does not.
 std::string ParametersReader::turns_problem(const ParameterFormula& formula, const std::string& unit) const {
-  const Turns wanted = unit == "Hz" ? Turns::turns : unit == "rad/s" ? Turns::radians : Turns::none;
-  if (wanted == Turns::none) return "";
+  const AngleUnit wanted = unit == "Hz" ? AngleUnit::turns : unit == "rad/s" ? AngleUnit::radians : AngleUnit::none;
+  if (wanted == AngleUnit::none) return "";
   for (const std::size_t k : formula.of) {
-    if (turns_[k] == Turns::none || turns_[k] == wanted) continue;
+    if (turns_[k] == AngleUnit::none || turns_[k] == wanted) continue;
     const Parameter& parameter = parameters_.entries[k];
-    return "parameter '" + parameter.name + "' counts " + (wanted == Turns::turns ? "radians" : "turns") + " a second, but the field " +
-           (wanted == Turns::turns ? "turns, 'Hz'" : "radians, 'rad/s'") +
+    return "parameter '" + parameter.name + "' counts " + (wanted == AngleUnit::turns ? "radians" : "turns") + " a second, but the field " +
+           (wanted == AngleUnit::turns ? "turns, 'Hz'" : "radians, 'rad/s'") +
            ": write the parameter in 1/s, and 2*pi in the formula where it belongs";
   }
   return "";

@@ -50,8 +50,8 @@ private:
   std::vector<Diagnostic>& problems_;
   Parameters parameters_;
   std::unordered_map<std::string, std::size_t> by_name_; ///< index in entries, by name
-  enum class Turns { none, turns, radians };
-  std::vector<Turns> turns_; ///< for each entry with unit 1/s, whether its unit means turns or radians
+  enum class AngleUnit { none, turns, radians };
+  std::vector<AngleUnit> turns_; ///< for each entry with unit 1/s, whether its unit means turns or radians
   std::vector<bool> is_wrong_, is_resolved_;
   std::unordered_map<const Node*, Found> found_;
   bool is_excused_ = false;

@@ -79,7 +79,7 @@ PartEntries::PartEntries(const Catalogue& catalogue, std::vector<Diagnostic>& pr
   for (const SignalKind* kind : catalogue.signals) signals_.emplace(kind->name, facts_of(kind->fields, nullptr));
   for (const TableKind* kind : catalogue.tables) {
     tables_.emplace(kind->name, facts_of(kind->fields, kind->create()));
-    if (!can_stand_in_part(*kind)) of_model_alone_.push_back(kind->name);
+    if (!is_allowed_in_part(*kind)) model_only_.push_back(kind->name);
   }
 }
 
@@ -96,19 +96,19 @@ std::shared_ptr<const PartEntries::KindFacts> PartEntries::facts_of(const FieldT
   return facts;
 }
 
-bool PartEntries::are_of_model_alone(const std::string& array) const {
-  return std::find(of_model_alone_.begin(), of_model_alone_.end(), array) != of_model_alone_.end();
+bool PartEntries::are_model_only(const std::string& array) const {
+  return std::find(model_only_.begin(), model_only_.end(), array) != model_only_.end();
 }
 
 bool PartEntries::are_known(const std::string& array) const {
   return array == "body" || array == "marker" || array == "signal" || array == "element" ||
-         (tables_.count(array) > 0 && !are_of_model_alone(array));
+         (tables_.count(array) > 0 && !are_model_only(array));
 }
 
 std::vector<std::string> PartEntries::arrays() const {
   std::vector<std::string> names = {"body", "marker", "signal", "element"};
   for (const auto& [name, facts] : tables_)
-    if (!are_of_model_alone(name)) names.push_back(name);
+    if (!are_model_only(name)) names.push_back(name);
   std::sort(names.begin() + 4, names.end());
   return names;
 }

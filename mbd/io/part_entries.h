@@ -29,7 +29,7 @@ public:
 
   /// Returns true if the file of a part may contain [[array]] entries.
   [[nodiscard]] bool are_known(const std::string& array) const;
-  [[nodiscard]] bool are_of_model_alone(const std::string& array) const;
+  [[nodiscard]] bool are_model_only(const std::string& array) const;
   /// Returns all names of arrays for which are_known() is true.
   [[nodiscard]] std::vector<std::string> arrays() const;
 
@@ -58,7 +58,7 @@ private:
 
   std::vector<Diagnostic>& problems_;
   Kinds elements_, signals_, tables_;
-  std::vector<std::string> of_model_alone_;
+  std::vector<std::string> model_only_;
   std::unordered_set<std::string> placed_; ///< bodies and markers of joints that place bodies, by their names in the model
 };
 

@@ -283,7 +283,7 @@ void PartWriter::lay_over_parts(const std::vector<Overlay>& overlays, const Node
     const bool is_of_own_kind = entry.find("kind") != nullptr;
     if (const Node* const kind = target.find("kind"); kind && !is_of_own_kind) entry.children.push_back(*kind);
     Node over = entries_.made(overlay.array, entry, root, place, false);
-    if (!lay_over(target, std::move(over), overlay.array, problems_)) removed_.insert(found->first);
+    if (!merge_entry(target, std::move(over), overlay.array, problems_)) removed_.insert(found->first);
   }
 }
 
@@ -301,7 +301,7 @@ void PartWriter::refuse_array(const Node& array) {
   if (entries_.are_known(array.key))
     return add(array.where_key(),
                "'" + array.key + "' must be an array of tables, each begun by [[" + array.key + "]], not " + array.type_name());
-  if (entries_.are_of_model_alone(array.key)) {
+  if (entries_.are_model_only(array.key)) {
     const Node& first = array.is_array_of_tables() ? array.children.front() : array;
     return add(first.where(), "[[" + array.key +
                                   "]] concerns the whole model and is not allowed in the file of a part: write it into the model, "
@@ -493,7 +493,7 @@ PartTreatment part_treatment(const FieldTable& kind, const Field& field) {
   return PartTreatment::none;
 }
 
-bool can_stand_in_part(const TableKind& kind) {
+bool is_allowed_in_part(const TableKind& kind) {
   if (&kind == &channel_kind() || &kind == &plot_kind() || &kind == &acceptance_kind()) return true;
   const auto& fields = kind.fields.fields();
   const auto belongs_there = [](const Field& field) {

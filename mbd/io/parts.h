@@ -43,6 +43,6 @@ void name_parts(std::vector<Diagnostic>& problems, const Document& document);
 enum class PartTreatment { none, name, place, direction, fixed_axis };
 [[nodiscard]] PartTreatment part_treatment(const FieldTable& kind, const Field& field);
 /// Returns false for tables that concern the model as a whole, and so cannot be in the file of a part.
-[[nodiscard]] bool can_stand_in_part(const TableKind& kind);
+[[nodiscard]] bool is_allowed_in_part(const TableKind& kind);
 
 } // namespace steplap

@@ -27,7 +27,7 @@ void add_friction(const FrictionElement& friction, EventKinds& kinds) {
                                friction.contact_switch_event(there, here)})
     add(kinds, kind);
   if (friction.dimension() == 3)
-    for (const EventKind kind : {EventKind::slips, EventKind::slips_another_way, EventKind::comes_apart}) add(kinds, kind);
+    for (const EventKind kind : {EventKind::slips, EventKind::changes_slip_direction, EventKind::comes_apart}) add(kinds, kind);
   else
     for (const EventKind kind : {EventKind::slips_forward, EventKind::slips_backward}) add(kinds, kind);
 }

@@ -63,8 +63,8 @@ const SignalKind& record_signal_kind() {
                  "A measured history from a CSV file, linear between its rows, 0 before "
                  "the first; it may be shorter than the run.",
                  {},
-                 make_held<SignalDefinition, Record>,
-                 copy_held<SignalDefinition, Record>,
+                 create_object<SignalDefinition, Record>,
+                 copy_object<SignalDefinition, Record>,
                  build_record};
     k.fields.add("file", &Record::file).as(FieldType::file).required().doc("CSV file, relative to the model file");
     k.fields.add("time_column", &Record::time_column).doc("name of the column of times, or its number from \"1\"");

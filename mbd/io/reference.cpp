@@ -75,7 +75,7 @@ std::string example_of(const Catalogue& catalogue, const Described& kind) {
 std::vector<KindChannel> channels_of(const Catalogue& catalogue, const Described& kind) {
   if (kind.role == "table" && kind.name == "body") return channels_of_bodies(catalogue);
   if (kind.role == "table" && kind.name == "marker") return channels_of_markers(catalogue);
-  if (kind.role == "settings" && kind.name == "output") return channels_of_whole(catalogue);
+  if (kind.role == "settings" && kind.name == "output") return channels_of_model(catalogue);
   if (kind.role != "element") return {};
   const ElementKind* const element = catalogue.find_element(kind.name);
   return element ? channels_of_kind(catalogue, *element) : std::vector<KindChannel>{};

@@ -14,7 +14,7 @@ std::string choice_of(const FieldTable& table, const char* name, const void* obj
 
 } // namespace
 
-bool hangs_on_others(const Field& field) { return field.unit.find('|') != std::string::npos; }
+bool depends_on_other_fields(const Field& field) { return field.unit.find('|') != std::string::npos; }
 
 std::string unit_in(const FieldTable& table, const Field& field, const void* object) {
   const std::size_t bar = field.unit.find('|');

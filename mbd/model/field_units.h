@@ -9,7 +9,7 @@
 namespace steplap {
 
 /// Returns true if the unit of `field` depends on other fields.
-[[nodiscard]] bool hangs_on_others(const Field& field);
+[[nodiscard]] bool depends_on_other_fields(const Field& field);
 /// Returns the unit of `field` for the values in `object`, whose fields `table` lists.
 [[nodiscard]] std::string unit_in(const FieldTable& table, const Field& field, const void* object);
 /// Returns the unit for any object, as shown in documents and messages: "N m or N".

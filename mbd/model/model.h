@@ -114,8 +114,8 @@ struct ElementKind {
 
   /// Declares T as the struct of the elements of this kind.
   template <class T> void holds() {
-    create = make_held<Element, T>;
-    copy = copy_held<Element, T>;
+    create = create_object<Element, T>;
+    copy = copy_object<Element, T>;
   }
 };
 
@@ -247,8 +247,8 @@ struct TableKind {
 
   /// Declares T as the struct of the tables of this kind.
   template <class T> void holds() {
-    create = make_held<Element, T>;
-    copy = copy_held<Element, T>;
+    create = create_object<Element, T>;
+    copy = copy_object<Element, T>;
   }
 };
 

@@ -218,8 +218,8 @@ const SignalKind& shunting_kind() {
                  "end, all alike. "
                  "It is slowed where it runs into one ahead (speed > other_speed), and pushed where one runs into it from behind.",
                  {},
-                 make_held<SignalDefinition, Shunting>,
-                 copy_held<SignalDefinition, Shunting>,
+                 create_object<SignalDefinition, Shunting>,
+                 copy_object<SignalDefinition, Shunting>,
                  [](const SignalDefinition& d) { return WagonImpact(static_cast<const Shunting&>(d)).pulse(); }};
     k.fields.add("mass", &Shunting::mass).in("kg").positive().required().doc("of the wagon with all that it carries");
     k.fields.add("other_mass", &Shunting::other_mass).in("kg").positive().required().doc("of the other wagon, or of a group of wagons");

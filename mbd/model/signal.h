@@ -112,9 +112,9 @@ struct SignalDefinition {
 };
 
 /// Returns a new default-constructed T as a Base. Kinds refer to their entries by base class.
-template <class Base, class T> std::shared_ptr<Base> make_held() { return std::make_shared<T>(); }
+template <class Base, class T> std::shared_ptr<Base> create_object() { return std::make_shared<T>(); }
 /// Returns a copy of `object`, which must be a T.
-template <class Base, class T> std::shared_ptr<Base> copy_held(const Base& object) {
+template <class Base, class T> std::shared_ptr<Base> copy_object(const Base& object) {
   return std::make_shared<T>(static_cast<const T&>(object));
 }
 
@@ -132,8 +132,8 @@ struct SignalKind {
 
   /// Declares T as the struct of the definitions of this kind.
   template <class T> void holds() {
-    create = make_held<SignalDefinition, T>;
-    copy = copy_held<SignalDefinition, T>;
+    create = create_object<SignalDefinition, T>;
+    copy = copy_object<SignalDefinition, T>;
   }
 };
 

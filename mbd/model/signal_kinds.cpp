@@ -59,7 +59,7 @@ struct Constant : SignalDefinition {
 const SignalKind& constant_kind() {
   static const SignalKind kind = [] {
     SignalKind k{
-        "constant", "The same value at all times.", {}, make_held<SignalDefinition, Constant>, copy_held<SignalDefinition, Constant>,
+        "constant", "The same value at all times.", {}, create_object<SignalDefinition, Constant>, copy_object<SignalDefinition, Constant>,
         nullptr};
     k.fields.add("value", &Constant::value).in("*").required().doc("the value");
     k.build = [](const SignalDefinition& d) { return Signal::constant(as<Constant>(d).value); };
@@ -73,8 +73,8 @@ const SignalKind& haversine_kind() {
                                "Raised cosine, peak (1 - cos(2 pi tau / duration)) / 2; its integral is "
                                "peak duration / 2.",
                                pulse_fields(),
-                               make_held<SignalDefinition, Pulse>,
-                               copy_held<SignalDefinition, Pulse>,
+                               create_object<SignalDefinition, Pulse>,
+                               copy_object<SignalDefinition, Pulse>,
                                [](const SignalDefinition& d) {
                                  const Pulse& p = as<Pulse>(d);
                                  Piece piece = polynomial(p.start, 0.5 * p.peak);
@@ -89,8 +89,8 @@ const SignalKind& half_sine_kind() {
                                "Half a sine wave, peak sin(pi tau / duration); its integral is 2/pi peak "
                                "duration.",
                                pulse_fields(),
-                               make_held<SignalDefinition, Pulse>,
-                               copy_held<SignalDefinition, Pulse>,
+                               create_object<SignalDefinition, Pulse>,
+                               copy_object<SignalDefinition, Pulse>,
                                [](const SignalDefinition& d) {
                                  const Pulse& p = as<Pulse>(d);
                                  Piece piece = polynomial(p.start, 0.0);
@@ -104,8 +104,8 @@ const SignalKind& rectangle_kind() {
   static const SignalKind kind{"rectangle",
                                "The value peak for the whole duration; its integral is peak duration.",
                                pulse_fields(),
-                               make_held<SignalDefinition, Pulse>,
-                               copy_held<SignalDefinition, Pulse>,
+                               create_object<SignalDefinition, Pulse>,
+                               copy_object<SignalDefinition, Pulse>,
                                [](const SignalDefinition& d) {
                                  const Pulse& p = as<Pulse>(d);
                                  return Signal({polynomial(p.start, p.peak), polynomial(p.start + p.duration, 0.0)});
@@ -132,8 +132,8 @@ const SignalKind& triangle_kind() {
     SignalKind k{"triangle",
                  "Linear up to the peak and down again; its integral is peak duration / 2.",
                  pulse_fields(),
-                 make_held<SignalDefinition, Triangle>,
-                 copy_held<SignalDefinition, Triangle>,
+                 create_object<SignalDefinition, Triangle>,
+                 copy_object<SignalDefinition, Triangle>,
                  build_triangle};
     k.fields.add("rise", &Triangle::rise).in("s").not_negative().doc("time from start to peak; half the duration if not given");
     return k;
@@ -179,8 +179,8 @@ const SignalKind& trapezoid_kind() {
                  "Linear rise, constant peak, linear fall; its integral is peak "
                  "(rise / 2 + hold + fall / 2).",
                  {},
-                 make_held<SignalDefinition, Trapezoid>,
-                 copy_held<SignalDefinition, Trapezoid>,
+                 create_object<SignalDefinition, Trapezoid>,
+                 copy_object<SignalDefinition, Trapezoid>,
                  build_trapezoid};
     k.fields.add("peak", &Trapezoid::peak).in("*").required().doc("largest value; negative for a deceleration");
     k.fields.add("start", &Trapezoid::start).in("s").doc("time at which the pulse begins");
@@ -213,8 +213,8 @@ const SignalKind& sine_kind() {
     SignalKind k{"sine",
                  "amplitude sin(2 pi frequency (t - start) + phase), zero before start: without a phase it begins at zero.",
                  {},
-                 make_held<SignalDefinition, Sine>,
-                 copy_held<SignalDefinition, Sine>,
+                 create_object<SignalDefinition, Sine>,
+                 copy_object<SignalDefinition, Sine>,
                  build_sine};
     k.fields.add("amplitude", &Sine::amplitude).in("*").required().doc("largest value");
     k.fields.add("frequency", &Sine::frequency).in("Hz").positive().required().doc("cycles per second");
@@ -255,8 +255,8 @@ const SignalKind& harmonics_kind() {
                  "offset + sum of amplitude cos(2 pi frequency (t - start) + phase), zero before "
                  "start; for a single sine see the kind sine.",
                  {},
-                 make_held<SignalDefinition, Harmonics>,
-                 copy_held<SignalDefinition, Harmonics>,
+                 create_object<SignalDefinition, Harmonics>,
+                 copy_object<SignalDefinition, Harmonics>,
                  build_harmonics};
     k.fields.add("offset", &Harmonics::offset).in("*").doc("constant added to the harmonics");
     k.fields.add("amplitudes", &Harmonics::amplitudes).in("*").required().doc("one per harmonic");

@@ -94,7 +94,7 @@ bool Descent::project() {
     statics_.evaluate(state_);
     const VecX off = statics_.off();
     VecX way;
-    const double size = landscape_->way_to_rows(off, way);
+    const double size = landscape_->displacement_to_rows(off, way);
     if (statics_.rows().empty()) return true;
     const double close = 8.0 * k_epsilon * reach_;
     if (!std::isfinite(size) || size > length_) return false;
@@ -143,7 +143,7 @@ double Descent::correct(const VecX& step, const std::vector<double>& from, doubl
   }
   clearance_->measure(first);
   clearance_->measure(state_.q);
-  if (is_better && (now < slope || now < 0.0) && clearance_->keeps_sides(way_from(first))) return now;
+  if (is_better && (now < slope || now < 0.0) && clearance_->keeps_sides(displacement_from(first))) return now;
   state_.q = first;
   statics_.evaluate(state_);
   return slope;
@@ -183,7 +183,7 @@ bool Descent::land(const std::vector<double>& from, VecX& step) {
   return is_cut;
 }
 
-VecX Descent::way_from(const std::vector<double>& from) const {
+VecX Descent::displacement_from(const std::vector<double>& from) const {
   VecX way(n_);
   for (int k = 0; k < n_; ++k) way[k] = state_.q[k + 3] - from[k + 3];
   return way;
@@ -198,7 +198,7 @@ void Descent::refine_first_contact(const std::vector<double>& from, const VecX& 
     if (!is_on_rows || !move_to(from, share * step))
       for (int k = 0; k < n_; ++k) state_.q[k + 3] = from[k + 3] + scale_[k] * step[k] * share;
     clearance_->measure(state_.q, i > 0);
-    if (clearance_->keeps_sides(way_from(last))) return;
+    if (clearance_->keeps_sides(displacement_from(last))) return;
     share = 0.5 * (before + share);
   }
 }
@@ -282,7 +282,7 @@ bool Descent::advance(VecX step) {
   double low = 0.0, high = whole, slope = 0.0, factor = whole;
   bool is_taken = false;
   for (int trial = 0; trial < k_most_trials; ++trial) {
-    stop_if_asked("in the search for rest");
+    throw_if_stopped("in the search for rest");
     bool is_too_far = !move_to(from, factor * step);
     if (!is_too_far) {
       slope = slope_along(step);
@@ -460,7 +460,7 @@ DescentEnd Descent::run() {
   if (!project()) state_.q = given;
   int failures = 0;
   for (iterations_ = 0; iterations_ < most_iterations_; ++iterations_) {
-    stop_if_asked("in the search for rest");
+    throw_if_stopped("in the search for rest");
     linearise();
     if (iterations_ == 0) yielding_at_start_ = landscape_->count_yielding();
     const VecX newton = landscape_->newton_step();

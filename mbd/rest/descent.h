@@ -71,7 +71,7 @@ private:
   [[nodiscard]] double slope_along(const VecX& step) const;
   [[nodiscard]] double first_contact(const std::vector<double>& from, const VecX& step);
   void refine_first_contact(const std::vector<double>& from, const VecX& step, double before, double& share);
-  [[nodiscard]] VecX way_from(const std::vector<double>& from) const;
+  [[nodiscard]] VecX displacement_from(const std::vector<double>& from) const;
   void adapt_region(double factor, const VecX& step, bool is_straight);
   [[nodiscard]] double correct(const VecX& step, const std::vector<double>& from, double slope);
   [[nodiscard]] bool loads_friction() const;

@@ -393,7 +393,7 @@ private:
   Equilibrium at_rest() {
     hold_where_it_is();
     for (const Slip& slip : slips_) result_.slid.push_back(slip.friction);
-    result_.hangs_on_way = (result_.is_settled || !result_.slid.empty()) && !result_.margins.empty();
+    result_.depends_on_path = (result_.is_settled || !result_.slid.empty()) && !result_.margins.empty();
     note_drives();
     result_.state = state_;
     result_.state.v = start_.v;
@@ -740,11 +740,11 @@ std::string part_text(const System& system, const MotionPart& part) {
 
 std::vector<std::string> remarks_on(const System& system, const Equilibrium& found) {
   std::vector<std::string> remarks;
-  if (found.hangs_on_way && found.is_settled)
+  if (found.depends_on_path && found.is_settled)
     remarks.push_back(
         "friction holds it where it came to rest when released from the given pose with strong damping: this rest is one of many, "
         "need not be the nearest, and depends on the path");
-  else if (found.hangs_on_way)
+  else if (found.depends_on_path)
     remarks.push_back("friction holds it where it slid to: this rest is one of many, need not be the nearest, and "
                       "it depends on the path");
   for (const MotionPart& nudge : found.left) remarks.push_back(unstable_text(system, nudge) + ", and so did the search");

@@ -32,7 +32,7 @@ struct Equilibrium {
   int iterations = 0;                  ///< steps of the descent
   bool is_settled = false;             ///< found by releasing the damped machine
   int settling_steps = 0;              ///< time steps of that simulation
-  bool hangs_on_way = false;           ///< held by friction after sliding or settling, so one equilibrium of many
+  bool depends_on_path = false;        ///< held by friction after sliding or settling, so one equilibrium of many
   std::vector<FrictionMargin> margins; ///< margins of the sticking elements
   std::vector<MotionPart> indifferent; ///< directions without stiffness, each by its largest component
   int more_indifferent = 0;            ///< number of further directions without stiffness

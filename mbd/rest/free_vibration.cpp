@@ -123,7 +123,7 @@ void refine(const FreeVibration& v, Complex& value, ComplexVector& x) {
 
 } // namespace
 
-void FreeVibration::part_loose(const std::function<MatX(const MatX&)>& sizes_of) {
+void FreeVibration::separate_null_motions(const std::function<MatX(const MatX&)>& sizes_of) {
   // Motions without stiffness are the singular vectors of A whose singular value is a rounding error of the stiffness. Each value is
   // compared with the rounding of its own terms, not with that of the stiffest motion.
   const auto [sizes, vectors] = singular_vectors(a);

@@ -21,7 +21,7 @@ struct FreeVibration {
 
   /// Determines `held` and `loose`. For columns x of displacements of the whole model, sizes_of returns |K| |x|, with K the stiffness of
   /// the model.
-  void part_loose(const std::function<MatX(const MatX&)>& sizes_of);
+  void separate_null_motions(const std::function<MatX(const MatX&)>& sizes_of);
 };
 
 struct FreeMode {

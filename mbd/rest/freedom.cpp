@@ -147,8 +147,8 @@ std::vector<SharedReaction> reactions_of(const System& system, const std::vector
 
 } // namespace
 
-Freedom count_freedom(const System& system) {
-  Freedom freedom;
+DegreesOfFreedom count_freedom(const System& system) {
+  DegreesOfFreedom freedom;
   freedom.coordinates = 3 * (system.body_count() - 1);
   freedom.rows = static_cast<int>(system.rows.size());
   Rows rows(system);

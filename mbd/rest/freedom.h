@@ -19,7 +19,7 @@ struct SharedReaction {
   std::vector<std::string> quantities; ///< for joints and drives; empty for friction
 };
 
-struct Freedom {
+struct DegreesOfFreedom {
   int coordinates = 0;             ///< three for each movable body
   int rows = 0;                    ///< constraint rows of joints and drives
   int rank = 0;                    ///< number of independent rows
@@ -32,6 +32,6 @@ struct Freedom {
   [[nodiscard]] int degrees_sticking() const { return coordinates - rank_sticking; }
 };
 
-[[nodiscard]] Freedom count_freedom(const System& system);
+[[nodiscard]] DegreesOfFreedom count_freedom(const System& system);
 
 } // namespace steplap

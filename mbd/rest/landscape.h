@@ -72,10 +72,10 @@ public:
 
   // The following refer to the present evaluation of the statics, which may be at another pose with the same rows.
   /// Computes the least displacement `way` (in scaled coordinates) that removes the errors `off` of the rows. Returns its size.
-  virtual double way_to_rows(const VecX& off, VecX& way) = 0;
-  /// Returns the lengths of the rows' scaled gradients at the last way_to_rows().
+  virtual double displacement_to_rows(const VecX& off, VecX& way) = 0;
+  /// Returns the lengths of the rows' scaled gradients at the last displacement_to_rows().
   [[nodiscard]] virtual const VecX& row_size() const = 0;
-  /// Returns the component of a vector along the motions that the rows allow, with the rows of the last way_to_rows().
+  /// Returns the component of a vector along the motions that the rows allow, with the rows of the last displacement_to_rows().
   [[nodiscard]] virtual VecX along_rows(const VecX& vector) const = 0;
   /// Returns the displacement that balances the forces in the stiff directions. `size` receives its largest component.
   [[nodiscard]] virtual VecX stiff_imbalance(double& size) = 0;

@@ -113,7 +113,7 @@ public:
     return parts;
   }
 
-  double way_to_rows(const VecX& off, VecX& way) override {
+  double displacement_to_rows(const VecX& off, VecX& way) override {
     end_ = tangent_of(scene_.statics, scene_.scale, &kept_);
     const auto count = static_cast<Eigen::Index>(end_.kept.size());
     VecX left(count);

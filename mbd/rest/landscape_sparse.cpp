@@ -153,7 +153,7 @@ public:
     return parts;
   }
 
-  double way_to_rows(const VecX& off, VecX& way) override {
+  double displacement_to_rows(const VecX& off, VecX& way) override {
     held_.measure(scene_.statics, scene_.scale);
     factor_rows();
     way = VecX::Zero(n_);

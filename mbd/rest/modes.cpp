@@ -43,7 +43,7 @@ FreeVibration free_vibration(const System& system, State state) {
   v.a = v.basis.transpose() * stiffness * v.basis;
   v.b = v.basis.transpose() * statics.damping() * v.basis;
   const MatX size = stiffness.cwiseAbs();
-  v.part_loose([&size](const MatX& shapes) { return MatX(size * shapes.cwiseAbs()); });
+  v.separate_null_motions([&size](const MatX& shapes) { return MatX(size * shapes.cwiseAbs()); });
   return v;
 }
 

@@ -51,7 +51,7 @@ public:
     double h = std::sqrt(k_first * scene_.length / reference_), longest = h;
     clearance_.measure(state_.q);
     for (; found.steps < std::min(most, 1.0 * (reach_ ? k_most_steps_near : k_most_steps)) && h > k_shortest * longest; ++found.steps) {
-      stop_if_asked("while the machine settled");
+      throw_if_stopped("while the machine settled");
       State next = state_;
       if (!can_step(next, h)) {
         h *= 0.25;

@@ -183,7 +183,7 @@ private:
     v.a = -(v.basis.transpose() * (scene_.stiffness() * v.basis));
     v.b = -(v.basis.transpose() * (scene_.damping() * v.basis));
     const SparseVibration::Sparse sizes = scene_.stiffness().cwiseAbs();
-    v.part_loose([&sizes](const MatX& shapes) { return MatX(sizes * shapes.cwiseAbs()); });
+    v.separate_null_motions([&sizes](const MatX& shapes) { return MatX(sizes * shapes.cwiseAbs()); });
     found_.rigid_motions = scene_.bare_count() + static_cast<int>(v.loose.cols());
     std::vector<FreeMode> modes = modes_of(v);
     std::stable_sort(modes.begin(), modes.end(), [this](const FreeMode& one, const FreeMode& other) {

@@ -20,9 +20,9 @@ namespace {
 std::string owner_of(const std::string& channel) { return channel.substr(0, std::min(channel.rfind('.'), channel.size())); }
 
 // Returns all impacts of a run. Those caused by an action are assigned to the elements that the action activated.
-std::vector<RigidBlow> blows_of(const Model& model, const RunResult& result) {
-  std::vector<RigidBlow> blows;
-  for (const RigidBlow& blow : result.blows) {
+std::vector<RigidImpact> blows_of(const Model& model, const RunResult& result) {
+  std::vector<RigidImpact> blows;
+  for (const RigidImpact& blow : result.blows) {
     const Action* const action = find_action(model, blow.element);
     if (!action) blows.push_back(blow);
     for (const std::string& text : action ? action->steps : std::vector<std::string>{})
@@ -36,16 +36,16 @@ std::vector<RigidBlow> blows_of(const Model& model, const RunResult& result) {
 // impact.
 class ImpactParticipants {
 public:
-  ImpactParticipants(const LoadedModel& loaded, const std::vector<RigidBlow>& blows) : model_(loaded.model), system_(*loaded.system) {
+  ImpactParticipants(const LoadedModel& loaded, const std::vector<RigidImpact>& blows) : model_(loaded.model), system_(*loaded.system) {
     parent_.resize(static_cast<std::size_t>(system_.body_count()));
     std::iota(parent_.begin(), parent_.end(), 0);
     for (int i = 1; i < system_.body_count(); ++i) place_[system_.bodies[i].name] = i;
     for (const Marker& marker : model_.markers)
       if (const auto body = place_.find(marker.body); body != place_.end()) place_.try_emplace(marker.name, int{body->second});
     for (const RowSpec& row : system_.rows) join(row.a, row.b);
-    for (const RigidBlow& blow : blows)
+    for (const RigidImpact& blow : blows)
       for (const int body : bodies_of(blow.element)) join(body, bodies_of(blow.element).front());
-    for (const RigidBlow& blow : blows) {
+    for (const RigidImpact& blow : blows) {
       note(elements_, blow.element, blow.t);
       for (const int body : bodies_of(blow.element)) note(roots_, root(body), blow.t);
     }
@@ -125,9 +125,9 @@ std::optional<double> first_blow_of(const Channel& channel, const Model& model, 
 
 } // namespace
 
-void leave_struck_open(Judgement& judgement, const LoadedModel& loaded, const RunResult& result) {
+void leave_impacts_open(Judgement& judgement, const LoadedModel& loaded, const RunResult& result) {
   const Model& model = loaded.model;
-  const std::vector<RigidBlow> blows = judgement.criteria.empty() ? std::vector<RigidBlow>{} : blows_of(model, result);
+  const std::vector<RigidImpact> blows = judgement.criteria.empty() ? std::vector<RigidImpact>{} : blows_of(model, result);
   if (blows.empty()) return;
   const ImpactParticipants struck(loaded, blows);
   const std::size_t of_elements = judgement.criteria.size() - std::min(judgement.criteria.size(), model.criteria.size());

@@ -18,6 +18,6 @@ inline constexpr std::string_view k_but_for_a_blow = "met except for a rigid imp
 /// Sets criteria from "hold" to "open" if a rigid impact makes their value unknown, and updates the verdict. Affected are limits on forces,
 /// couples and accelerations of the elements and bodies that take part in the impact, and of all bodies connected to them by constraint
 /// rows. Criteria that are not met are unchanged.
-void leave_struck_open(Judgement& judgement, const LoadedModel& loaded, const RunResult& result);
+void leave_impacts_open(Judgement& judgement, const LoadedModel& loaded, const RunResult& result);
 
 } // namespace steplap

@@ -29,17 +29,17 @@ Estimate estimate_errors(const Run& run, const RunOptions& options) {
   const SimulationOptions as_run = simulation_options(loaded, options);
   const RunStatistics& statistics = run.result.statistics;
   double most_evaluations = std::numeric_limits<double>::infinity();
-  std::optional<Estimate> too_dear; // result if reference runs are not possible either
+  std::optional<Estimate> too_expensive; // result if reference runs are not possible either
   if (options.estimating == Estimating::cheap) {
     const double times = relative_cost_of_finer_runs(*loaded.system, as_run), parts = evaluation_cost(*loaded.system, statistics);
     const double evaluations_a_part = static_cast<double>(statistics.evaluations) / std::max(parts, 1.0);
     most_evaluations = std::floor(k_most * k_little * evaluations_a_part);
     if (!(times * parts < k_little)) {
-      too_dear = none(EstimateStatus::too_dear, "would take long; ask for it explicitly");
-      too_dear->cost = times * statistics.cpu_seconds;
+      too_expensive = none(EstimateStatus::too_expensive, "would take long; ask for it explicitly");
+      too_expensive->cost = times * statistics.cpu_seconds;
       most_evaluations = std::floor(std::min(k_little, parts) * evaluations_a_part);
       if (!is_measured_by_references(*loaded.system, as_run.integrator) || most_evaluations < k_least_references)
-        return *std::move(too_dear);
+        return *std::move(too_expensive);
     }
   }
   try {
@@ -54,8 +54,8 @@ Estimate estimate_errors(const Run& run, const RunOptions& options) {
     }
     return estimate;
   } catch (const EvaluationBudgetExceeded& stopped) {
-    if (too_dear) return *std::move(too_dear);
-    return none(EstimateStatus::too_dear, std::string(stopped.what()) + "; ask for it explicitly");
+    if (too_expensive) return *std::move(too_expensive);
+    return none(EstimateStatus::too_expensive, std::string(stopped.what()) + "; ask for it explicitly");
   } catch (const NumericalFailure& failure) {
     return none(EstimateStatus::failed, std::string("the finer run failed: ") + failure.what());
   }

@@ -9,10 +9,10 @@ namespace steplap {
 
 /// Result of the attempt to estimate the errors of a run.
 enum class EstimateStatus {
-  known,    ///< `errors` is available
-  left_out, ///< not requested, or the run did not reach its end
-  too_dear, ///< not forced, and the finer runs would take too long
-  failed    ///< a finer run could not be completed
+  known,         ///< `errors` is available
+  left_out,      ///< not requested, or the run did not reach its end
+  too_expensive, ///< not forced, and the finer runs would take too long
+  failed         ///< a finer run could not be completed
 };
 
 /// The errors of a run, or the reason why they are unknown.

@@ -147,7 +147,7 @@ void warn_of_unused_parameters(const Model& model, Findings& findings) {
 
 // Finds loads whose distribution among redundant constraints is not unique.
 void warn_of_shared_reactions(const System& system, Findings& findings) {
-  const Freedom freedom = count_freedom(system);
+  const DegreesOfFreedom freedom = count_freedom(system);
   if (!freedom.shared.empty())
     warn(findings, "shared_reactions",
          "the reactions of " + list_of(system, freedom.shared) +
@@ -391,7 +391,7 @@ std::vector<Finding> findings_at_end(const LoadedModel& loaded, const RunResult&
   append(findings, growing_criteria(loaded, result, judgement));
   append(findings, bodies_that_fall(loaded, result));
   append(findings, open_at_end(loaded, result));
-  append(findings, far_limits(loaded, result, judgement));
+  append(findings, distant_limit_findings(loaded, result, judgement));
   return findings;
 }
 

@@ -262,7 +262,7 @@ Trust trust_of(const Report& report) {
       trust.text += " A second method, " + second_method(*second) + ", agrees.";
     return trust;
   }
-  if (report.estimate.status == EstimateStatus::too_dear)
+  if (report.estimate.status == EstimateStatus::too_expensive)
     return {TrustLevel::limited, "Errors are estimated on request only, since that takes long."};
   return {TrustLevel::limited, "Errors are not estimated: " + first_sentence(report.estimate.reason) + "."};
 }
@@ -286,7 +286,7 @@ Overview overview_of(const Report& report, ShownDigits digits) {
   overview.trust.guards = guards_of(report);
   std::unordered_set<std::string> known;
   for (const StoryEntry& entry : overview.story)
-    if (tells_of_motion(entry))
+    if (describes_motion(entry))
       for (const std::string& name : entry.who)
         if (known.insert(name).second) overview.moved.push_back(name);
   overview.reason = VerdictReason(report, overview, digits).text();

@@ -116,7 +116,7 @@ double way_out(const Part& inner, const Part& outer, const LoadedModel& loaded, 
 
 } // namespace
 
-std::vector<Finding> far_rest(const LoadedModel& loaded, const RunResult& result) {
+std::vector<Finding> distant_rest_findings(const LoadedModel& loaded, const RunResult& result) {
   const Model& model = loaded.model;
   if (model.simulation.initial != "equilibrium" || result.ranges.empty()) return {};
   const System& system = *loaded.system;
@@ -151,7 +151,7 @@ std::vector<Finding> far_rest(const LoadedModel& loaded, const RunResult& result
            worst->where}};
 }
 
-std::vector<Finding> far_limits(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
+std::vector<Finding> distant_limit_findings(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
   const std::vector<Criterion>& criteria = loaded.model.criteria;
   const std::size_t of_elements = judgement.criteria.size() - std::min(judgement.criteria.size(), criteria.size());
   const auto size_of = [](const ChannelRange& range) {

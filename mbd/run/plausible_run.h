@@ -8,10 +8,10 @@
 namespace steplap {
 
 /// Returns a note if the run began in equilibrium and a body moved by more than 0.01 of its size or 0.05 rad to reach it.
-[[nodiscard]] std::vector<Finding> far_rest(const LoadedModel& loaded, const RunResult& result);
+[[nodiscard]] std::vector<Finding> distant_rest_findings(const LoadedModel& loaded, const RunResult& result);
 /// Returns a note for each criterion whose limit, given without a unit, is a thousand times larger than the largest value of its channel
 /// and larger than all values of that unit in the run: its unit may be wrong.
-[[nodiscard]] std::vector<Finding> far_limits(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement);
+[[nodiscard]] std::vector<Finding> distant_limit_findings(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement);
 /// Returns a warning for each part that no joint guides and that began inside the outline of another part but ended across its edge.
 [[nodiscard]] std::vector<Finding> parts_outside(const LoadedModel& loaded, const RunResult& result);
 

@@ -78,7 +78,7 @@ void ask_second_opinion(Report& report, const RunOptions& options) {
   // A "hold" requires that the numbers were checked by the error estimate or by the second method.
   const std::string& none_because = report.second_opinion->none_because;
   if (none_because.empty() || report.estimate.errors) return;
-  const std::string why = report.estimate.status == EstimateStatus::too_dear ? "would take long" : report.estimate.reason;
+  const std::string why = report.estimate.status == EstimateStatus::too_expensive ? "would take long" : report.estimate.reason;
   add_cap(report.judgement, "nothing has checked its numbers: the errors are not estimated (" + why +
                                 "), and no second method can run the scene (" + none_because + ")");
 }
@@ -94,12 +94,12 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
   report.findings = std::move(before);
   for (const Finding& finding : findings_after(loaded, result)) add_finding(report, finding, options);
   if (!options.start)
-    for (const Finding& finding : far_rest(loaded, result)) add_finding(report, finding, options);
+    for (const Finding& finding : distant_rest_findings(loaded, result)) add_finding(report, finding, options);
   for (const Event& event : result.events) ++report.event_counts[words_of(event.kind)];
   const RunStatistics& s = result.statistics;
   if (s.energy_exchanged > 0.0) report.relative_energy_residual = s.energy_residual / s.energy_exchanged;
   report.judgement = judge(loaded.model, *loaded.system, result, report.run.failure ? report.run.failure->text : "");
-  leave_struck_open(report.judgement, loaded, result);
+  leave_impacts_open(report.judgement, loaded, result);
   if (!report.run.failure)
     for (const Finding& finding : findings_at_end(loaded, result, report.judgement)) add_finding(report, finding, options);
   for (const ElementEntry& entry : loaded.model.elements)

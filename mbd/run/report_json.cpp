@@ -74,7 +74,7 @@ const char* name_of(EstimateStatus status) {
   switch (status) {
   case EstimateStatus::known: return "known";
   case EstimateStatus::left_out: return "left out";
-  case EstimateStatus::too_dear: return "too dear";
+  case EstimateStatus::too_expensive: return "too dear";
   case EstimateStatus::failed: return "failed";
   }
   return "";

@@ -10,7 +10,7 @@ namespace steplap {
 
 namespace {
 
-void stop_if_asked(const RunOptions& options, double t) {
+void throw_if_stopped(const RunOptions& options, double t) {
   if (!options.stop) return;
   if (const std::string why = options.stop(); !why.empty()) throw RunStopped(why + " at t = " + number_text(t) + " s.");
 }
@@ -20,7 +20,7 @@ void stop_if_asked(const RunOptions& options, double t) {
 SimulationOptions simulation_options(const LoadedModel& loaded, const RunOptions& options) {
   SimulationOptions simulation = options_of(loaded.model);
   simulation.has_extremes = options.has_extremes;
-  simulation.progress = [options](double t) { stop_if_asked(options, t); };
+  simulation.progress = [options](double t) { throw_if_stopped(options, t); };
   return simulation;
 }
 
@@ -32,7 +32,7 @@ Run run_model(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& op
   bool is_over = false; // the run has failed; result() then still samples the last state, and must not be stopped
   simulation_asked.progress = [&is_over, &options](double t) {
     if (options.progress) options.progress(t);
-    if (!is_over) stop_if_asked(options, t);
+    if (!is_over) throw_if_stopped(options, t);
   };
   simulation_asked.has_growth = options.has_extremes;
   Simulation simulation(*loaded->system, options.start ? *options.start : initial_state_of(*loaded), std::move(simulation_asked));

@@ -217,7 +217,7 @@ private:
     case EventKind::slips:
     case EventKind::slips_forward:
     case EventKind::slips_backward:
-    case EventKind::slips_another_way: return begin(StorySubject::slips, event, error);
+    case EventKind::changes_slip_direction: return begin(StorySubject::slips, event, error);
     case EventKind::sticks:
     case EventKind::loses_normal_force: return end(StorySubject::slips, event, error);
     case EventKind::force_reaches_zero:
@@ -237,7 +237,7 @@ private:
     case EventKind::loses_interface: return begin(StorySubject::interface, event, error);
     case EventKind::happens: return take_action(event, error);
     case EventKind::storm: return begin(StorySubject::storm, event, error);
-    case EventKind::storm_over: return end(StorySubject::storm, event, error);
+    case EventKind::event_storm_ends: return end(StorySubject::storm, event, error);
     default: return;
     }
   }
@@ -481,7 +481,7 @@ std::string sentence_name(std::string name) {
 
 const char* key_of(StorySubject what) { return words_of(what).key; }
 
-bool tells_of_motion(const StoryEntry& entry) {
+bool describes_motion(const StoryEntry& entry) {
   switch (entry.what) {
   case StorySubject::slips:
   case StorySubject::lifts:

@@ -64,7 +64,7 @@ struct StoryEntry {
 /// Returns the entries in order of their begin.
 [[nodiscard]] std::vector<StoryEntry> story_of(const Report& report, const RangeIndex& ranges, ShownDigits digits = {});
 /// Returns true if the entry reports that an element slipped, opened or broke.
-[[nodiscard]] bool tells_of_motion(const StoryEntry& entry);
+[[nodiscard]] bool describes_motion(const StoryEntry& entry);
 /// Returns the name with a capital first letter: "Front joint".
 [[nodiscard]] std::string sentence_name(std::string name);
 

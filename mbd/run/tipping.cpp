@@ -30,13 +30,13 @@ public:
     return found;
   }
 
-  std::vector<Unjudged> unjudged() const {
-    std::vector<Unjudged> found;
+  std::vector<UnjudgedPart> unjudged() const {
+    std::vector<UnjudgedPart> found;
     for (const int component : scene_.components()) {
       TippingPart own(scene_.system().bodies.size(), 0);
       scene_.add_component(component, own);
       if (!is_carried(own)) continue;
-      Unjudged one;
+      UnjudgedPart one;
       const auto part = scene_.part_on(component, &one.why);
       if (part && is_led(*part)) one.why = "joints or drives keep it from turning over";
       if (one.why.empty()) continue;
@@ -161,7 +161,7 @@ private:
       of_gravity += mass * scene_.system().gravity.dot(v);
       of_turned += mass * quarter_turn(scene_.system().gravity).dot(v);
     };
-    for (const HungLoad& hung : scene_.hung())
+    for (const HangingLoad& hung : scene_.hung())
       if (part[hung.carrier]) weigh(hung.mass, velocity(twist, hung.point));
     for (int i = 1; i < scene_.system().body_count(); ++i) {
       if (!part[i]) continue;
@@ -196,7 +196,7 @@ private:
 
 } // namespace
 
-std::vector<Unjudged> not_judged_for_tipping(const LoadedModel& loaded, const State& state) {
+std::vector<UnjudgedPart> not_judged_for_tipping(const LoadedModel& loaded, const State& state) {
   const TippingScene scene(loaded, state);
   if (!(scene.system().gravity.norm() > 0.0) || scene.feet().empty()) return {};
   return PartTipping(scene).unjudged();

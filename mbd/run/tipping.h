@@ -35,12 +35,12 @@ struct Tipping {
 [[nodiscard]] std::vector<Tipping> tipping_of(const LoadedModel& loaded, const State& state);
 
 /// A part on feet whose margin cannot be computed.
-struct Unjudged {
+struct UnjudgedPart {
   int body = 0;    ///< heaviest body of the part
   std::string why; ///< reason, as a clause after "because"
 };
 /// Returns all parts on feet that tipping_of() does not judge.
-[[nodiscard]] std::vector<Unjudged> not_judged_for_tipping(const LoadedModel& loaded, const State& state);
+[[nodiscard]] std::vector<UnjudgedPart> not_judged_for_tipping(const LoadedModel& loaded, const State& state);
 
 /// Returns a sentence for each part that tips in its present pose, with the foot about which it tips and the limit angle.
 [[nodiscard]] std::vector<std::string> tipping_over(const LoadedModel& loaded, const State& state);

@@ -148,7 +148,7 @@ private:
         push(blocks.turned, quarter_turn(scene_.system().gravity));
       };
       weigh(scene_.system().bodies[i].mass, scene_.centre(i));
-      for (const HungLoad& hung : scene_.hung())
+      for (const HangingLoad& hung : scene_.hung())
         if (hung.carrier == i) weigh(hung.mass, hung.point);
       rows.add(blocks.loads, i, {scene_.load(i).fx, scene_.load(i).fy, scene_.load(i).m}, 1.0);
     }

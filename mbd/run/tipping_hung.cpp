@@ -34,7 +34,7 @@ public:
     }
   }
 
-  Hanging run() {
+  HangingLoads run() {
     std::vector<Candidate> candidates;
     for (std::size_t i = 0; i < ties_.size(); ++i)
       if (auto candidate = hung_by(i)) candidates.push_back(std::move(*candidate));
@@ -50,7 +50,7 @@ private:
     std::vector<char> is_below;      ///< per body: belongs to the hanging load
     std::size_t first = 0, last = 0; ///< range of the tie's points that do not belong to the load
     std::size_t at = 0;              ///< index of the suspension point among the tie's points
-    HungLoad load;
+    HangingLoad load;
   };
 
   void add_point(Tie& tie, const std::string& name) const {
@@ -149,13 +149,13 @@ private:
   const State& state_;
   const std::vector<BodyForce>& force_;
   std::vector<Tie> ties_; ///< connections, one per element of the model
-  Hanging found_;
+  HangingLoads found_;
 };
 
 } // namespace
 
-Hanging hanging_loads(const LoadedModel& loaded, const State& state, const std::vector<std::string>& touching,
-                      const std::vector<BodyForce>& force) {
+HangingLoads hanging_loads(const LoadedModel& loaded, const State& state, const std::vector<std::string>& touching,
+                           const std::vector<BodyForce>& force) {
   return HangingSearch(loaded, state, touching, force).run();
 }
 

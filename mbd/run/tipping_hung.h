@@ -11,7 +11,7 @@
 namespace steplap {
 
 /// A hanging load, as point mass on the body that carries it.
-struct HungLoad {
+struct HangingLoad {
   int carrier = k_ground;    ///< index of the carrying body in the system
   Vec2 point = Vec2::Zero(); ///< suspension point in ground axes, m
   double mass = 0.0;         ///< mass of the load, kg
@@ -19,16 +19,16 @@ struct HungLoad {
 };
 
 /// All hanging loads of a pose, and their effect on the bodies that carry them.
-struct Hanging {
-  std::vector<HungLoad> loads; ///< one for each hanging load
-  std::vector<char> is_hung;   ///< per body: belongs to a hanging load
+struct HangingLoads {
+  std::vector<HangingLoad> loads; ///< one for each hanging load
+  std::vector<char> is_hung;      ///< per body: belongs to a hanging load
   /// Per body: correction of the element forces on bodies that carry loads, from the present motion to loads at rest.
   std::vector<BodyForce> correction;
   std::vector<std::string> by; ///< names of the suspending elements
 };
 
 /// Finds the hanging loads. `force`: force on each body, in `state`, of elements that are neither contacts nor joints.
-[[nodiscard]] Hanging hanging_loads(const LoadedModel& loaded, const State& state, const std::vector<std::string>& touching,
-                                    const std::vector<BodyForce>& force);
+[[nodiscard]] HangingLoads hanging_loads(const LoadedModel& loaded, const State& state, const std::vector<std::string>& touching,
+                                         const std::vector<BodyForce>& force);
 
 } // namespace steplap

@@ -178,7 +178,7 @@ void TippingScene::name_part(const TippingPart& part, Tipping& tipping) const {
     ++count;
     if (tipping.body == 0 || system_.bodies[i].mass > system_.bodies[tipping.body].mass) tipping.body = i;
   }
-  for (const HungLoad& hung : hanging_.loads)
+  for (const HangingLoad& hung : hanging_.loads)
     if (part[hung.carrier]) count += hung.bodies;
   tipping.others = count - 1;
 }

@@ -32,7 +32,7 @@ public:
   /// Returns the taut inextensible ropes that carry no hanging load. They act as constraints against lengthening.
   [[nodiscard]] const std::vector<const OneSidedRow*>& stays() const { return stays_; }
   /// Returns all freely hanging loads.
-  [[nodiscard]] const std::vector<HungLoad>& hung() const { return hanging_.loads; }
+  [[nodiscard]] const std::vector<HangingLoad>& hung() const { return hanging_.loads; }
   /// Returns springs and similar elements, with the bodies that they connect.
   [[nodiscard]] const std::vector<PairJacobian>& springs() const { return springs_; }
   /// Returns the force on a body, about its centre of gravity, of everything except gravity, contacts and joints.
@@ -74,7 +74,7 @@ private:
   Statics statics_;
   std::vector<BodyForce> load_;
   std::vector<PairJacobian> springs_;
-  Hanging hanging_;
+  HangingLoads hanging_;
   std::vector<const OneSidedRow*> stays_;
   std::vector<Foot> feet_;
   std::vector<int> component_, components_;

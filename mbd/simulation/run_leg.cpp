@@ -80,7 +80,7 @@ void RunLeg::project_and_set_up(const PowerLedger* before, const std::vector<Imp
   formula_search_ = std::make_unique<FormulaSearch>(system_, actions_ ? group_ : nullptr);
   if (formula_search_->is_empty()) formula_search_.reset();
   integrator_->expect_dense_evaluations(extremes_ || ledger_ || options_.output_step > 0.0);
-  if (integrator_->is_adaptive()) tell_slip_laws(dynamics_.evaluation(), options_.settings.tolerance, system_.frictions.size());
+  if (integrator_->is_adaptive()) set_slip_tolerances(dynamics_.evaluation(), options_.settings.tolerance, system_.frictions.size());
   restart();
   energy_.start(dynamics_, state_.t, y_.data(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
 }
@@ -430,7 +430,7 @@ bool RunLeg::pass_step() {
   constexpr long k_now_and_then = 64; // number of steps after which progress is reported even if no sample is due
   if (integrator_->steps() % k_now_and_then == 0) {
     if (options_.progress) options_.progress(state_.t);
-    stop_if_asked("in a simulation"); // for runs without progress reports: error estimates and second methods
+    throw_if_stopped("in a simulation"); // for runs without progress reports: error estimates and second methods
   }
   const long evaluations = dynamics_.evaluations();
   guard_against_crawl();
@@ -439,7 +439,7 @@ bool RunLeg::pass_step() {
     return true;
   }
   check_finite();
-  const double share = integrator_->is_adaptive() ? integrator_->turns_kept(dynamics_) : 1.0;
+  const double share = integrator_->is_adaptive() ? integrator_->fraction_within_turn_limits(dynamics_) : 1.0;
   if ((share < 1.0 && integrator_->shorten(dynamics_, share)) || (formula_search_ && ends_at_peak())) return false;
   const bool is_event = !is_sliding_mode_at_end() && finder_.find(*integrator_, dynamics_, handler_.fresh());
   if (finder_.is_step_withdrawn() || !integrator_->resolves_slips(dynamics_, is_event ? finder_.theta() : 1.0, finder_.state().data()))

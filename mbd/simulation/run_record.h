@@ -73,7 +73,7 @@ struct RunResult {
   std::vector<FaceTravel> face_travels;
   std::vector<ExtremesSoFar> growth;  ///< extremes up to some tens of times distributed over the run, if requested
   std::vector<Event> events;          ///< ascending in time
-  std::vector<RigidBlow> blows;       ///< ascending in time; an action that activated joints is named instead of the joints
+  std::vector<RigidImpact> blows;     ///< ascending in time; an action that activated joints is named instead of the joints
   std::vector<SimultaneousSlip> ties; ///< ascending in time, at most RunRecord::k_most_ties
   RunStatistics statistics;           ///< effort and accuracy
   State final_state;                  ///< state at the end, or where the run stopped
@@ -87,7 +87,7 @@ struct RunResult {
 struct RunRecord {
   std::unique_ptr<Trajectory> trajectory;          ///< never nullptr
   std::vector<Event> events;                       ///< ascending in time
-  std::vector<RigidBlow> blows;                    ///< ascending in time
+  std::vector<RigidImpact> blows;                  ///< ascending in time
   std::vector<SimultaneousSlip> ties;              ///< the first k_most_ties simultaneous slips
   static constexpr std::size_t k_most_ties = 1000; ///< largest number of simultaneous slips kept
   std::vector<ExtremesSoFar> growth;               ///< ascending in time; each entry covers its leg from the start of the leg

@@ -101,7 +101,7 @@ void RunLeg::step_through_storm(const std::string& element, double end) {
   const State stepped = state_;
   handler_.settle_phases(state_);
   note_stepped(stepped, state_, state_.t - last);
-  record_->events.push_back({state_.t, element, EventKind::storm_over});
+  record_->events.push_back({state_.t, element, EventKind::event_storm_ends});
   storm_.clear();
   events_at_once_ = 0;
   dynamics_.set_left_limit_time(next_limit());

@@ -84,13 +84,13 @@ Variants::Variants(const Model& given, std::vector<std::string> paths, const std
   if (channels) channels_ = *channels;
   for (const std::string& path : paths_) {
     static_cast<void>(number_of(given_, path)); // throws unless the path leads to a number
-    redone_ = std::max(redone_, recompilation_for(path));
+    recompilation_ = std::max(recompilation_, recompilation_for(path));
   }
   const bool is_any_builder =
       std::any_of(given_.tables.begin(), given_.tables.end(), [](const TableEntry& e) { return body_builder(e) != nullptr; });
   // Bodies and markers that tables add cannot be replaced alone, so everything is completed again.
-  if (redone_ == RecompilationScope::tables && is_any_builder) redone_ = RecompilationScope::all;
-  if (redone_ == RecompilationScope::tables) note_tables();
+  if (recompilation_ == RecompilationScope::tables && is_any_builder) recompilation_ = RecompilationScope::all;
+  if (recompilation_ == RecompilationScope::tables) note_tables();
 }
 
 // Returns true if the path begins with `head`, or names a parameter on which a field whose path begins with `head` depends.
@@ -107,7 +107,7 @@ void Variants::note_tables() {
   const std::size_t count = given_.elements.size();
   for (std::size_t i = 0; i < count; ++i)
     if (!is_same(given_.elements[i].kind->fields, given_.elements[i].element.get(), completed_.elements[i].element.get()))
-      redone_ = RecompilationScope::all;
+      recompilation_ = RecompilationScope::all;
   Model without = given_;
   without.tables.clear();
   std::vector<Diagnostic> problems; // none, since completed() has reported them
@@ -121,7 +121,7 @@ void Variants::note_tables() {
     entry.kind->apply(*entry.table, without);
     if (count_others() == before) applied_.push_back(i);
     else if (std::any_of(paths_.begin(), paths_.end(), [&](const std::string& path) { return is_set_by(path, entry.kind->name + "."); }))
-      redone_ = RecompilationScope::all;
+      recompilation_ = RecompilationScope::all;
   }
   for (std::size_t i = 0; i < completed_.markers.size(); ++i) // markers made for bodies come after the given ones
     if (i >= given_.markers.size() || (!given_.markers[i].point && !given_.markers[i].at)) at_centres_.push_back(i);
@@ -160,13 +160,13 @@ std::unique_ptr<System> Variants::make(const std::vector<double>& values) {
   const auto set_all = [&](Model& model) {
     for (std::size_t i = 0; i < paths_.size(); ++i) set_value(model, paths_[i], values[i]);
   };
-  bool is_completed = redone_ != RecompilationScope::all;
-  if (redone_ == RecompilationScope::tables) {
+  bool is_completed = recompilation_ != RecompilationScope::all;
+  if (recompilation_ == RecompilationScope::tables) {
     completed_.elements.erase(completed_.elements.begin() + static_cast<std::ptrdiff_t>(given_.elements.size()), completed_.elements.end());
     completed_.bodies = bodies_;
   }
   if (is_completed) set_all(completed_);
-  if (redone_ == RecompilationScope::tables) is_completed = apply_tables();
+  if (recompilation_ == RecompilationScope::tables) is_completed = apply_tables();
   if (!is_completed) {
     set_all(given_);
     completed_ = completed(given_);

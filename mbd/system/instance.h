@@ -43,7 +43,7 @@ private:
   Model given_, completed_;
   std::vector<std::string> paths_;
   std::optional<std::vector<std::string>> channels_;
-  RecompilationScope redone_ = RecompilationScope::nothing;
+  RecompilationScope recompilation_ = RecompilationScope::nothing;
   // Used for RecompilationScope::tables only:
   std::vector<std::size_t> applied_;                              ///< tables to be applied again: all except plots, criteria and channels
   std::vector<Body> bodies_;                                      ///< bodies before tables were applied

@@ -206,7 +206,7 @@ private:
     } else if constexpr (Law::k_event_count > 0) {
       entry.law.event_value(m.value, m.rate, mode_of(entry, e), e.event_value + entry.first_event, e.event_derivative + entry.first_event);
     }
-    if (!is_surely_zero(f)) apply_force(e.link_force[entry.link], m, f);
+    if (!is_structural_zero(f)) apply_force(e.link_force[entry.link], m, f);
     return (entry.law.elastic_force(m.value, mode_of(entry, e)) - f) * m.rate;
   }
 

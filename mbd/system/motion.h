@@ -81,14 +81,14 @@ template <class S> STEPLAP_INLINE S relative_spin(const Motion<S>& a, const Moti
 /// Takes the place of body b in a measure when the motion of a is relative to b (link.h). All terms with the motion of b then vanish at
 /// compile time.
 struct Origin {};
-struct Still {}; ///< zero velocity
+struct ZeroVelocity {}; ///< zero velocity
 
 STEPLAP_INLINE Pair<double> to_ground(Origin, const Vec2& local) { return {local.x(), local.y()}; }
 template <class S> STEPLAP_INLINE Pair<S> offset(const Motion<S>& a, Origin) { return {a.x, a.y}; }
 template <class S> STEPLAP_INLINE S relative_angle(const Motion<S>& a, Origin) { return a.theta; }
 template <class S> STEPLAP_INLINE S relative_spin(const Motion<S>& a, Origin) { return a.omega; }
-template <class S> STEPLAP_INLINE Still point_velocity(Origin, const Pair<S>&) { return {}; }
-template <class S> STEPLAP_INLINE Pair<S> operator-(const Pair<S>& a, Still) { return a; }
+template <class S> STEPLAP_INLINE ZeroVelocity point_velocity(Origin, const Pair<S>&) { return {}; }
+template <class S> STEPLAP_INLINE Pair<S> operator-(const Pair<S>& a, ZeroVelocity) { return a; }
 
 template <class B> inline constexpr bool k_is_origin = false;
 template <> inline constexpr bool k_is_origin<Origin> = true;

@@ -17,7 +17,7 @@ struct SlipScratch : FrictionScratch {
 };
 
 /// Passes the tolerance to the slip laws of all friction elements of an evaluation.
-inline void tell_slip_laws(const Evaluation& e, double tolerance, std::size_t frictions) {
+inline void set_slip_tolerances(const Evaluation& e, double tolerance, std::size_t frictions) {
   for (std::size_t f = 0; f < frictions; ++f)
     if (auto* scratch = dynamic_cast<SlipScratch*>(e.scratch[f])) scratch->follow(tolerance);
 }

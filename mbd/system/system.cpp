@@ -481,7 +481,7 @@ std::function<double(const Snapshot&)> value_while_inactive(const std::function<
 
 } // namespace
 
-bool SystemBuilder::wants_channel(std::string_view owner, std::string_view name) const {
+bool SystemBuilder::is_channel_requested(std::string_view owner, std::string_view name) const {
   if (!wanted_) return true;
   return std::any_of(wanted_->begin(), wanted_->end(), [&](std::string_view w) {
     return w.size() == owner.size() + 1 + name.size() && w.starts_with(owner) && w[owner.size()] == '.' && w.ends_with(name);
@@ -491,7 +491,7 @@ bool SystemBuilder::wants_channel(std::string_view owner, std::string_view name)
 SystemBuilder::Use SystemBuilder::use_of(std::string_view owner, std::string_view name, bool is_on_request) const {
   const auto& also = model_.output.also;
   if (!wanted_ && !is_on_request) return Use::channel;
-  if (wanted_ ? wants_channel(owner, name) : false) return Use::channel;
+  if (wanted_ ? is_channel_requested(owner, name) : false) return Use::channel;
   if (!also.empty() || !operand_names_.empty()) {
     std::string whole(owner);
     whole.append(1, '.').append(name);

@@ -277,7 +277,7 @@ public:
   /// Returns the element of the model with this name, or nullptr.
   [[nodiscard]] const ElementEntry* element(const std::string& name) const;
   /// Returns the names of the channels to be made; nullopt: all.
-  [[nodiscard]] std::optional<std::vector<std::string>> wanted_channels() const {
+  [[nodiscard]] std::optional<std::vector<std::string>> requested_channel_names() const {
     return wanted_ ? std::optional<std::vector<std::string>>(*wanted_) : std::nullopt;
   }
   /// Adds a time, s, at which a step must end.
@@ -344,7 +344,7 @@ private:
     bool does_work;
   };
   template <class Group> static GroupType type_of();
-  [[nodiscard]] bool wants_channel(std::string_view owner, std::string_view name) const;
+  [[nodiscard]] bool is_channel_requested(std::string_view owner, std::string_view name) const;
   [[nodiscard]] Use use_of(std::string_view owner, std::string_view name, bool is_on_request) const;
   Channel& enter_channel(Use use, std::string_view owner, std::string_view name, std::string_view unit, const ChannelText& text,
                          std::function<double(const Snapshot&)> value);

@@ -138,8 +138,8 @@ private:
 };
 
 /// Returns true if x is zero for all inputs; for a double, if it is zero. Skipping such terms does not change a sum that began with +0.
-inline bool is_surely_zero(double x) { return x == 0.0; }
-inline bool is_surely_zero(const TapeNumber& x) { return x.is_constant() && value_of(x) == 0.0; }
+inline bool is_structural_zero(double x) { return x == 0.0; }
+inline bool is_structural_zero(const TapeNumber& x) { return x.is_constant() && value_of(x) == 0.0; }
 
 inline double least_of(double a, double b) { return b < a ? b : a; }
 inline double greatest_of(double a, double b) { return a < b ? b : a; }

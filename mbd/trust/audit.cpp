@@ -248,7 +248,7 @@ void add_unknown_channels(System& system, double met) {
   add(k_forces, "what forces change by where places and velocities do by what they are known to, N",
       [=](const Snapshot& s) { return known_to(*self, s, met, *scratch).force + turned_force(s, *self, met); });
   add(k_velocities, "what velocities are known to, m/s", [=](const Snapshot& s) { return known_to(*self, s, met, *scratch).rate; });
-  add(k_places, "what places are known to, m", [=](const Snapshot& s) { return places_known_to(*self, s, met); });
+  add(k_places, "what places are known to, m", [=](const Snapshot& s) { return position_accuracy(*self, s, met); });
 }
 
 void add_audit_channels(System& system, const Model& model) {

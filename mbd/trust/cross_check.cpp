@@ -321,7 +321,7 @@ private:
     for (const TimedEvent& event : x.events()) {
       if (!event.is_counted || !std::isfinite(event.shift) || event.t > until || event.alone < near) continue;
       // If a slip in several coordinates passes through rest within a step, time stepping cannot show it.
-      if (event.kind == EventKind::slips_another_way && is_stepping(j)) continue;
+      if (event.kind == EventKind::changes_slip_direction && is_stepping(j)) continue;
       double distance = INFINITY, allowed = 0.0;
       bool is_doubted = false;
       for (const TimedEvent& other : y.events()) {

@@ -80,7 +80,7 @@ enum class Swings : unsigned char { count, do_not_count };
 FastestGrowth fastest_of_all(FreeVibration v, const std::function<MatX(const MatX&)>& size_of, Swings swings) {
   FastestGrowth found;
   if (v.a.cols() > k_most_companion) return found;
-  v.part_loose(size_of);
+  v.separate_null_motions(size_of);
   std::vector<FreeMode> modes;
   try {
     modes = modes_of(v);

@@ -92,7 +92,7 @@ struct JointAssessment {
   }
   /// Returns true if the joint takes part in the motion and carried clearly more than its capacity, so that results within steps are
   /// unreliable.
-  [[nodiscard]] bool bears_too_much() const { return !is_monitored && !has_come_apart && smallest_margin < 1.0 - k_off_surface; }
+  [[nodiscard]] bool exceeds_capacity() const { return !is_monitored && !has_come_apart && smallest_margin < 1.0 - k_off_surface; }
   [[nodiscard]] bool is_known() const { return smallest_margin == smallest_margin; }
 
   JointVerdict verdict = JointVerdict::not_assessed;

@@ -35,7 +35,7 @@ double changed_by(const PairJacobian& pair, int row, const BodyAccuracy& a, cons
 
 } // namespace
 
-KnownTo known_to(const System& system, const Snapshot& s, double met, std::vector<PairJacobian>& scratch) {
+MotionAccuracy known_to(const System& system, const Snapshot& s, double met, std::vector<PairJacobian>& scratch) {
   const std::size_t count = system.bodies.size();
   std::vector<BodyAccuracy> bodies(count);
   for (std::size_t b = 0; b < count; ++b) bodies[b] = of_body(system, static_cast<int>(b), s.motion[b], met);
@@ -52,7 +52,7 @@ KnownTo known_to(const System& system, const Snapshot& s, double met, std::vecto
       const double on_it = portable::hypot(portable::hypot(fx, fy), couple);
       if (std::isfinite(on_it)) force[static_cast<std::size_t>(body)] += on_it;
     }
-  KnownTo known;
+  MotionAccuracy known;
   for (std::size_t b = 1; b < count; ++b) {
     const double mass = system.bodies[b].mass;
     known.force = std::max(known.force, force[b]);
@@ -62,7 +62,7 @@ KnownTo known_to(const System& system, const Snapshot& s, double met, std::vecto
   return known;
 }
 
-double places_known_to(const System& system, const Snapshot& s, double met) {
+double position_accuracy(const System& system, const Snapshot& s, double met) {
   double known = 0.0;
   for (int b = 1; b < system.body_count(); ++b) known = std::max(known, of_body(system, b, s.motion[b], met).place);
   return known;

@@ -12,17 +12,17 @@
 namespace steplap {
 
 /// Accuracy limits of a system: each member is that of the body for which it is largest.
-struct KnownTo {
+struct MotionAccuracy {
   double rate = 0.0;  ///< m/s
   double force = 0.0; ///< N; sum over all elements that act on the body
 };
 
 /// Returns the accuracy limits at `s`. `met`: accuracy to which constraints are satisfied, m or rad, and m/s or rad/s
 /// (SimulationSettings::projection_tolerance). `scratch` is overwritten.
-[[nodiscard]] KnownTo known_to(const System& system, const Snapshot& s, double met, std::vector<PairJacobian>& scratch);
+[[nodiscard]] MotionAccuracy known_to(const System& system, const Snapshot& s, double met, std::vector<PairJacobian>& scratch);
 
 /// Returns the accuracy of positions, m: that of the body for which it is largest.
-[[nodiscard]] double places_known_to(const System& system, const Snapshot& s, double met);
+[[nodiscard]] double position_accuracy(const System& system, const Snapshot& s, double met);
 
 /// Returns the accuracy of the velocity along a row, m/s.
 [[nodiscard]] double row_rate_known_to(const RowSpec& row, const Snapshot& s, double met);

@@ -232,7 +232,7 @@ TEST_CASE("no dip of a sum of harmonics is certain or far by the places of any m
       CAPTURE(places.size());
       CAPTURE(i);
       CHECK(2.0 * nodes.low(0) <= nodes.high(0));
-      CHECK_FALSE(nodes.is_surely_positive(watched(f, random.chance(0.5))));
+      CHECK_FALSE(nodes.is_proven_positive(watched(f, random.chance(0.5))));
     }
 }
 
@@ -279,5 +279,5 @@ TEST_CASE("values of merged joints are judged by the places that have looked at 
   nodes.close(&start, &end);
   CHECK(nodes.low(0) > 0.0);
   CHECK(f.at(0.46) < 0.0);
-  CHECK_FALSE(nodes.is_surely_positive(watched(f, false, true)));
+  CHECK_FALSE(nodes.is_proven_positive(watched(f, false, true)));
 }

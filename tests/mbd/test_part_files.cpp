@@ -523,7 +523,7 @@ TEST_CASE("each field of every kind is known to turn with a part or not to") {
   for (const ElementKind* kind : transformer_catalog().elements) look(kind->name, kind->fields);
   for (const SignalKind* kind : transformer_catalog().signals) look(kind->name, kind->fields);
   for (const TableKind* kind : transformer_catalog().tables)
-    if (can_stand_in_part(*kind)) look(kind->name, kind->fields);
+    if (is_allowed_in_part(*kind)) look(kind->name, kind->fields);
   CHECK(found ==
         "step_lap_interface.yoke place\nstep_lap_interface.limb place\nstep_lap_interface.yoke_holes place\nstep_lap_interface.limb_holes "
         "place\n"
@@ -533,7 +533,7 @@ TEST_CASE("each field of every kind is known to turn with a part or not to") {
         "name\ncore.joints name\n");
   std::string alone;
   for (const TableKind* kind : transformer_catalog().tables)
-    if (!can_stand_in_part(*kind)) alone += kind->name + " ";
+    if (!is_allowed_in_part(*kind)) alone += kind->name + " ";
   CHECK(alone == "case clamp recorder uncertain ");
 }
 

@@ -51,7 +51,7 @@ TEST_CASE("sums of stages: the same bits by one, two and four numbers at a time"
       combine<dop853::a, 12, 12>(y.data(), h, k.data(), k_stride, n, combined.data());
       weighted_sum<dop853::e5, 12>(k.data(), k_stride, n, weighted.data());
       weighted_row<dop853::d, 2, 16>(h, k.data(), k_stride, n, scaled.data());
-      put_sums_by_two<[](std::size_t j) { return dop853::e5[j]; }, 12>(k.data(), k_stride, 0, n, by_two.data(), AsItIs{});
+      put_sums_by_two<[](std::size_t j) { return dop853::e5[j]; }, 12>(k.data(), k_stride, 0, n, by_two.data(), UnchangedSum{});
       bool are_same = true;
       for (int i = 0; i < n; ++i) {
         are_same = are_same && is_same(combined[i], y[i] + h * sum_of(&dop853::a[12][0], &k[i], 12));

@@ -101,7 +101,7 @@ TEST_CASE("every channel of every kind of element has a meaning, a sign and a un
   }
   CHECK(kinds >= 22);
   CHECK(count > 100);
-  for (const auto& list : {channels_of_bodies(catalogue), channels_of_markers(catalogue), channels_of_whole(catalogue)}) {
+  for (const auto& list : {channels_of_bodies(catalogue), channels_of_markers(catalogue), channels_of_model(catalogue)}) {
     CHECK(list.size() >= 5);
     for (const KindChannel& c : list) check_text(c.name, c.units.front(), c.meaning, c.sign, c.codes);
   }

@@ -170,7 +170,7 @@ TEST_CASE("statics knows a rope's gradient and curvature") {
 // 18 coordinates; weld 3, pin 2, drive 1, and the rope's one row while it is taut.
 TEST_CASE("a rope over many bodies is one row") {
   Bench b(1);
-  const Freedom freedom = count_freedom(*b.system);
+  const DegreesOfFreedom freedom = count_freedom(*b.system);
   CHECK(freedom.degrees() == 12);
   CHECK(freedom.degrees_sticking() == 11);
   CHECK(freedom.shared_sticking.empty());

@@ -118,7 +118,7 @@ TEST_CASE("chains over drums of any count and size rest") {
     // What the drum gives way to: the largest pull over the stiffness, a few times where nodes share it.
     CHECK(found.rest.residual < 1e-6 * pull / 0.02);
     for (const FrictionMargin& margin : found.rest.margins) CHECK(margin.used <= 1.0 + 1e-9);
-    if (found.rest.is_settled || !found.rest.slid.empty()) CHECK(found.rest.hangs_on_way);
+    if (found.rest.is_settled || !found.rest.slid.empty()) CHECK(found.rest.depends_on_path);
   }
 }
 

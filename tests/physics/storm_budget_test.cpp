@@ -53,7 +53,7 @@ Storms storms_of(long parts) {
   double begin = 0.0;
   for (const Event& event : result.events) {
     if (event.kind == EventKind::storm) begin = event.t;
-    if (event.kind == EventKind::storm_over) storms.longest = std::max(storms.longest, event.t - begin);
+    if (event.kind == EventKind::event_storm_ends) storms.longest = std::max(storms.longest, event.t - begin);
   }
   return storms;
 }

@@ -20,7 +20,7 @@ namespace {
 constexpr double k_same_margin = 0.02; // largest relative difference between the margins of the two computations of a voyage
 constexpr double k_still = 1e-3;       // m/s; a body that is slower at the end of an event counts as at rest
 
-void stop_if_asked(const AssessmentOptions& options, const std::string& where) {
+void throw_if_stopped(const AssessmentOptions& options, const std::string& where) {
   if (!options.stop) return;
   if (const std::string why = options.stop(); !why.empty()) throw RunStopped(why + " " + where + ".");
 }
@@ -70,7 +70,7 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
   a.uncertain = std::make_unique<UncertainValues>(a.models);
   a.shared = find_shared_frictions(a.models);
   for (const std::string& record : records) {
-    stop_if_asked(options, "before '" + record + "' was read");
+    throw_if_stopped(options, "before '" + record + "' was read");
     a.records.push_back(read_without_events(record, options.reading));
   }
   if (options.reading.pulse && std::none_of(a.records.begin(), a.records.end(), [](const RecordEvents& r) { return r.pulse.has_value(); }))
@@ -107,7 +107,7 @@ void pass_events(const AssessmentOptions& options, Assessment& a) {
   long done = 0;
   for (std::size_t e = 0; e < a.events.size(); ++e) {
     for (std::size_t m = 0; m < a.models.size(); ++m) {
-      stop_if_asked(options, "in event " + std::to_string(e + 1));
+      throw_if_stopped(options, "in event " + std::to_string(e + 1));
       if (options.progress) options.progress("events", done++, static_cast<long>(a.events.size() * a.models.size()));
       Passage passage = travellers[m].pass(a.histories[m][e], options.estimating);
       passage.event = e, passage.model = m;

@@ -93,7 +93,7 @@ std::string run_text(const Model& model) {
 }
 
 void print_freedom(TextTable& table, const System& system) {
-  const Freedom freedom = count_freedom(system);
+  const DegreesOfFreedom freedom = count_freedom(system);
   table.add_row({"coordinates", count_cell(static_cast<std::size_t>(freedom.coordinates))});
   std::string rows = std::to_string(freedom.rows);
   if (freedom.rank < freedom.rows) {

@@ -58,11 +58,11 @@ void print_reactions(std::ostream& out, const Model& model, const Equilibrium& f
     const Channel& channel = system->channels[i];
     if (is_reaction(channel)) table.add_row({channel.name, quantity_cell(values[i], channel.unit, scale[channel.unit])});
   }
-  if (!table.is_empty()) out << "\nReactions" << (found.hangs_on_way ? k_of_one_rest : "") << "\n" << table;
+  if (!table.is_empty()) out << "\nReactions" << (found.depends_on_path ? k_of_one_rest : "") << "\n" << table;
 }
 
 // Prints by which factor the present load could grow before each friction element slips.
-void print_margins(std::ostream& out, const System& system, const std::vector<FrictionMargin>& margins, bool hangs_on_way) {
+void print_margins(std::ostream& out, const System& system, const std::vector<FrictionMargin>& margins, bool depends_on_path) {
   TextTable table({Align::left, Align::right, Align::right});
   table.set_head("friction", {"friction", "used", "slips at"});
   for (const FrictionMargin& margin : margins)
@@ -70,7 +70,7 @@ void print_margins(std::ostream& out, const System& system, const std::vector<Fr
                    Cell(quantity_text(100.0 * margin.used, "%", 1.0), 100.0 * margin.used, "%"),
                    margin.used > 0.0 ? Cell(quantity_text(1.0 / margin.used, "times its load", 1.0), 1.0 / margin.used, "times its load")
                                      : Cell("carries no load at rest")});
-  if (!margins.empty()) out << "\nDistance from slipping" << (hangs_on_way ? k_of_one_rest : "") << "\n" << table;
+  if (!margins.empty()) out << "\nDistance from slipping" << (depends_on_path ? k_of_one_rest : "") << "\n" << table;
 }
 
 void print_equilibrium(std::ostream& out, const LoadedModel& loaded, const Equilibrium& found) {
@@ -82,7 +82,7 @@ void print_equilibrium(std::ostream& out, const LoadedModel& loaded, const Equil
       << small_text(found.residual) << " m/s²; moved at most " << quantity_text(found.moved, "m", k_unit) << "\n\n";
   print_poses(out, *loaded.system, loaded.system->initial_state(), found.state);
   print_reactions(out, loaded.model, found);
-  print_margins(out, *loaded.system, found.margins, found.hangs_on_way);
+  print_margins(out, *loaded.system, found.margins, found.depends_on_path);
   print_tipping(out, loaded, found.state);
   std::vector<std::string> remarks = remarks_on(*loaded.system, found);
   for (std::string& text : tipping_over(loaded, loaded.assembled)) remarks.push_back(std::move(text));

@@ -41,10 +41,10 @@ void print_tipping(std::ostream& out, const LoadedModel& loaded, const State& st
                    t.is_clockwise ? "clockwise" : "counter-clockwise",
                    t.acceleration > 0.0 ? quantity_cell(t.acceleration, "m/s^2", 1.0) : Cell("-")});
   }
-  const std::vector<Unjudged> unjudged = not_judged_for_tipping(loaded, state);
+  const std::vector<UnjudgedPart> unjudged = not_judged_for_tipping(loaded, state);
   if (is_any || !unjudged.empty()) out << "\nDistance from tipping over\n";
   if (is_any) out << table;
-  for (const Unjudged& one : unjudged)
+  for (const UnjudgedPart& one : unjudged)
     out << "  '" << loaded.system->bodies[one.body].name << "' is not judged, because " << one.why << "\n";
 }
 

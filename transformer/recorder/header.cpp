@@ -56,7 +56,7 @@ std::optional<double> with_unit(const std::vector<std::string>& values, std::str
 
 } // namespace
 
-std::optional<SaidRate> rate_of(const Metadata& metadata) {
+std::optional<HeaderRate> rate_of(const Metadata& metadata) {
   std::string unit;
   if (const auto* said = metadata.find({"samplerate", "samplingrate", "sampleratehz", "samplingratehz", "samplingfrequency",
                                         "samplefrequency", "samplespersecond", "rate", "fs", "frequency", "scanrate"})) {
@@ -65,12 +65,12 @@ std::optional<SaidRate> rate_of(const Metadata& metadata) {
     const double factor = lower == "khz" || lower == "ks/s" ? 1000.0 : 1.0;
     const bool is_known = lower.empty() || lower == "hz" || lower == "khz" || lower == "s/s" || lower == "ks/s" || lower == "sps" ||
                           lower == "1/s" || lower == "samples/s";
-    if (value && *value > 0.0 && is_known) return SaidRate{*value * factor, said->line};
+    if (value && *value > 0.0 && is_known) return HeaderRate{*value * factor, said->line};
   }
   if (const auto* said = metadata.find({"samplinginterval", "sampleinterval", "sampleperiod", "deltat", "dt", "interval"})) {
     const auto value = with_unit(said->values, unit);
     const auto seconds = time_unit(unit);
-    if (value && seconds && *value > 0.0) return SaidRate{1.0 / (*value * *seconds), said->line};
+    if (value && seconds && *value > 0.0) return HeaderRate{1.0 / (*value * *seconds), said->line};
   }
   return std::nullopt;
 }

@@ -34,12 +34,12 @@ struct Metadata {
 [[nodiscard]] Metadata metadata_of(const std::vector<HeaderLine>& lines);
 
 /// A sampling rate given in the header, Hz, with its line: "SampleRate, 100,Hz", "Sampling interval: 5 ms" and similar.
-struct SaidRate {
+struct HeaderRate {
   double hz = 0.0;
   std::size_t line = 0;
 };
 /// Returns the sampling rate given in the header; nothing if there is none.
-[[nodiscard]] std::optional<SaidRate> rate_of(const Metadata& metadata);
+[[nodiscard]] std::optional<HeaderRate> rate_of(const Metadata& metadata);
 
 /// Returns the corner frequency of the recorder's low-pass given in the header, Hz: "Low-pass filter: 80 Hz" and similar.
 [[nodiscard]] std::optional<double> low_pass_of(const Metadata& metadata);

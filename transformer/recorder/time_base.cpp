@@ -42,7 +42,7 @@ class TimeFinder {
 public:
   TimeFinder(const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options,
              std::vector<std::string>& notes)
-      : layout_(layout), shape_(layout.shape), head_(head), options_(options), notes_(notes), said_rate_(rate_of(metadata)),
+      : layout_(layout), shape_(layout.shape), head_(head), options_(options), notes_(notes), header_rate_(rate_of(metadata)),
         metadata_(metadata) {}
 
   TimeBase find() {
@@ -192,11 +192,11 @@ private:
     source = "the family of the recorder";
     if (layout_.family == "Gulf Coast Data Concepts") return "s";
     if (layout_.family == "PALT" && is_size_of_days()) return "days";
-    const auto rate = options_.rate ? options_.rate : said_rate_ ? std::optional(said_rate_->hz) : std::nullopt;
+    const auto rate = options_.rate ? options_.rate : header_rate_ ? std::optional(header_rate_->hz) : std::nullopt;
     if (rate && !layout_.holds)
       for (const char* unit : {"s", "ms", "us"}) {
         const double samples = typical_step() * time_unit(unit).value() * *rate;
-        source = options_.rate ? "--rate" : "the rate in line " + std::to_string(said_rate_->line);
+        source = options_.rate ? "--rate" : "the rate in line " + std::to_string(header_rate_->line);
         if (samples > 0.8 && samples < 1.25) return unit;
       }
     fail(0, "Nothing says in which unit the times are. Give --time-unit s, ms, us, epoch or days." + likely_unit());
@@ -258,15 +258,15 @@ private:
     if (options_.rate) {
       base_.rate = *options_.rate;
       base_.rate_text = "--rate";
-    } else if (said_rate_ && (by_times == 0.0 || layout_.holds || std::abs(by_times / said_rate_->hz - 1.0) < 0.02)) {
-      base_.rate = said_rate_->hz;
-      base_.rate_text = "line " + std::to_string(said_rate_->line);
+    } else if (header_rate_ && (by_times == 0.0 || layout_.holds || std::abs(by_times / header_rate_->hz - 1.0) < 0.02)) {
+      base_.rate = header_rate_->hz;
+      base_.rate_text = "line " + std::to_string(header_rate_->line);
     } else if (by_times > 0.0 && (!layout_.holds || base_.index_column)) {
       base_.rate = by_times;
       base_.rate_text = "the first " + std::to_string(first_.texts.size()) + " times";
-      if (said_rate_)
-        notes_.push_back("Line " + std::to_string(said_rate_->line) + " says " + rounded_text(said_rate_->hz) + " Hz, but the times say " +
-                         rounded_text(by_times) + " Hz: the times are used. Give --rate if they are wrong.");
+      if (header_rate_)
+        notes_.push_back("Line " + std::to_string(header_rate_->line) + " says " + rounded_text(header_rate_->hz) +
+                         " Hz, but the times say " + rounded_text(by_times) + " Hz: the times are used. Give --rate if they are wrong.");
     } else {
       throw RecordError(layout_.file, head_[shape_.first_data].number, 1,
                         layout_.holds ? "Samples are left out of this record, and no line states the sampling rate. Give --rate HZ."
@@ -321,7 +321,7 @@ private:
   const std::vector<HeaderLine>& head_;
   const ReadOptions& options_;
   std::vector<std::string>& notes_;
-  std::optional<SaidRate> said_rate_;
+  std::optional<HeaderRate> header_rate_;
   const Metadata& metadata_;
   TimeBase base_;
   bool has_time_ = false;
