@@ -92,8 +92,9 @@ struct Separation {
   int corner = -1; ///< corner of the other body that is nearest to this face, or deepest behind it; −1: none
 };
 
-/// Returns the distance of the other outline from one face, with its nearest or deepest corner.
-inline Separation face_separation(const PlacedOutline<double>& own, int edge, const PlacedOutline<double>& other) {
+/// Returns the distance for one face, with the nearest or deepest corner of the other body. If it is not above `least` it may be too large:
+/// the search ends at the first corner that shows this. Of two outlines far apart most faces have the other behind them.
+inline Separation face_separation(const PlacedOutline<double>& own, int edge, const PlacedOutline<double>& other, double least) {
   Separation found;
   found.gap = std::numeric_limits<double>::infinity();
   for (int i = 0; i < other.corner_count; ++i) {
@@ -101,6 +102,7 @@ inline Separation face_separation(const PlacedOutline<double>& own, int edge, co
     if (!(height >= found.gap)) { // the comparison also accepts NaN, which is reported where forces are checked
       found.gap = height;
       found.corner = i;
+      if (height <= least) break;
     }
   }
   return found;
@@ -113,7 +115,7 @@ inline Separation separation_of(const PlacedOutline<double>& a, const PlacedOutl
   const auto look = [&best](const PlacedOutline<double>& own, const PlacedOutline<double>& other, int first) {
     if (other.corner_count == 0) return; // a half-plane extends behind every face
     for (int edge = 0; edge < own.edge_count; ++edge) {
-      Separation found = face_separation(own, edge, other);
+      Separation found = face_separation(own, edge, other, best.gap);
       if (best.corner >= 0 && found.gap <= best.gap) continue;
       found.face = first + edge;
       best = found;

@@ -444,17 +444,18 @@ void EventHandler::list_changes(const State& before, const State& state, std::ve
   for (std::size_t f = 0; f < state.friction.size(); ++f) (void)list_friction_change(f, before.friction[f], before.impacts, state, events);
 }
 
-// Adds mode changes of units, and slips of elements that stick in both states but slipped in between.
+// Adds changes of units, and slips of elements that stick at the end, slipped in between, and did not slip at the start.
 void EventHandler::list_changes_within(const State& before, const State& state, std::vector<Event>& events) const {
   for (std::size_t u = 0; u < system_.units.size(); ++u)
     if (before.mode[u] != state.mode[u]) list_unit_change(static_cast<int>(u), before.mode[u], state.mode[u], state.t, events);
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
     const FrictionState &old = before.friction[f], &now = state.friction[f];
-    if (old.phase != FrictionPhase::stick || now.phase != FrictionPhase::stick) continue;
+    if (old.phase == FrictionPhase::slip || now.phase != FrictionPhase::stick) continue;
     if (old.slid == now.slid && old.has_slipped == now.has_slipped && std::equal(old.direction, old.direction + 3, now.direction)) continue;
     const std::string& name = system_.element_names[system_.frictions[f].element];
     events.push_back({state.t, name, slip_kind(f, old, now)});
-    events.push_back({state.t, name, EventKind::sticks});
+    if (old.phase == FrictionPhase::stick)
+      events.push_back({state.t, name, EventKind::sticks}); // else a change of phase, listed with these
   }
 }
 

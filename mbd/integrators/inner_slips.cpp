@@ -45,8 +45,9 @@ State& probe_state() {
 
 } // namespace
 
-// Returns the utilisation of an element; 1 if it slips.
+// Returns the utilisation of an element; 1 if it slips, 0 if nothing presses on it.
 double TimeStepping::usage_of(const Evaluation& e, const FrictionPart& part) const {
+  if (!part.is_loaded) return 0.0;
   if (!part.block.sticks) return 1.0;
   const double* const wrench = &wrench_[static_cast<std::size_t>(part.first)];
   if (std::all_of(wrench, wrench + part.dimension, [](double w) { return w == 0.0; })) return 0.0;
@@ -70,7 +71,7 @@ bool TimeStepping::note_sticking(Dynamics& dynamics, double t1) {
     Sticking& now = sticking_now_[part.friction];
     now.t = t1;
     now.usage = usage_of(dynamics.evaluation(), part);
-    if (start_.friction[part.friction].phase == FrictionPhase::slip) continue; // the element came to rest in this part: its slip is known
+    if (start_.friction[part.friction].phase == FrictionPhase::slip || slides_at_landing(part)) continue; // it has just come to rest
     const bool is_known = before.t == start_.t;
     now.change = is_known ? std::abs(now.usage - before.usage) : 1.0;
     const double reach = k_reach * std::max(now.change, before.change);

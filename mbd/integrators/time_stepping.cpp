@@ -10,7 +10,11 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_max_mode_passes = 12; // if contact modes have not converged after this many passes, the step is halved
+constexpr int k_max_mode_passes = 12; // after so many passes, or where contact modes return to earlier ones, the step is halved
+constexpr int k_passes_of_cycle = 2;  // passes made again with earlier modes: both of a contact that neither closed nor open is consistent
+// Share of its displacement in a part by which a contact that is taken as open may be closed at the end. Its damper then acts a share s of
+// the part too late, which is an error of s c h/m ≈ s² of the velocity, since neither mode is consistent only for s < c h/m.
+constexpr double k_late = 0.25;
 // Limit of passes for the normal forces at the end of the step; without convergence the step is halved.
 constexpr int k_max_force_passes = 60;
 constexpr int k_passes_in_full = 12;  // later passes apply half of the change, so that an alternation between two states converges
@@ -59,6 +63,7 @@ void refuse_beyond_laws(const System& system, Dynamics& dynamics, const State& s
 TimeStepping::TimeStepping(const System& system) : system_(system) {
   const auto n = static_cast<std::size_t>(system.largest_dimension());
   for (auto* v : {&y0_, &y1_, &dy_, &right_, &free_, &probe_, &response_}) v->assign(n, 0.0);
+  modes_made_.reserve(k_max_mode_passes * system.units.size());
 }
 
 bool TimeStepping::is_rounding(double t0, double t1) const {
@@ -188,6 +193,30 @@ int TimeStepping::changed_unit(Dynamics& dynamics, State& state) {
   return first;
 }
 
+// Notes the modes used in a pass. Returns true if an earlier pass of the part was made with them: the next ones would repeat those after it.
+bool TimeStepping::repeats_modes(const State& state) {
+  const std::size_t count = state.mode.size();
+  bool is_known = false;
+  for (std::size_t first = 0; first < modes_made_.size() && !is_known; first += count)
+    is_known = std::equal(state.mode.begin(), state.mode.end(), modes_made_.begin() + static_cast<std::ptrdiff_t>(first));
+  modes_made_.insert(modes_made_.end(), state.mode.begin(), state.mode.end());
+  return is_known;
+}
+
+// Returns true if the modes at the end of the pass differ from those used in it only by contacts that close late in the part.
+bool TimeStepping::only_closes_late(const Dynamics& dynamics, const State& state) const {
+  const UnitMode* const used = &modes_made_[modes_made_.size() - state.mode.size()];
+  for (std::size_t u = 0; u < system_.units.size(); ++u) {
+    if (state.mode[u] == used[u]) continue;
+    const auto gap = std::min_element(dynamics.event_value().begin() + system_.units[u].first_event,
+                                      dynamics.event_value().begin() + system_.units[u].first_event + system_.units[u].event_count);
+    const double at_start = start_event_value_[gap - dynamics.event_value().begin()];
+    const bool closes_late = used[u] == 0 && start_.mode[u] == 0 && *gap < 0.0 && -*gap <= k_late * (at_start - *gap);
+    if (!closes_late) return false;
+  }
+  return true;
+}
+
 // Returns the first contact that is open at both ends of the step, but would have closed by linear extrapolation from either end; −1 if
 // there is none. A fast body may have passed a plate that is thinner than the step's displacement. If the body really reversed without
 // contact, another force did it, which a part of half the length resolves. A penetration below the accuracy of positions is ignored.
@@ -219,7 +248,10 @@ TimeStepping::StepFailure TimeStepping::try_part(Dynamics& dynamics, State& stat
   collect_friction(dynamics, state);
   dynamics.set_state(state);
   StepFailure trouble;
+  modes_made_.clear();
+  int repeated = 0;
   for (int pass = 0; pass < k_max_mode_passes; ++pass) {
+    if (repeats_modes(state) && ++repeated > k_passes_of_cycle) break;
     {
       const Means means(dynamics, time_of_loads(glance_ > 0.0 ? t1 - glance_ : start_.t));
       linearization_.evaluate(dynamics, time_of_loads(t1), y0_.data());
@@ -236,7 +268,7 @@ TimeStepping::StepFailure TimeStepping::try_part(Dynamics& dynamics, State& stat
         if (!std::isfinite(y1_[i])) trouble.what = "the motion became infinite";
     if (trouble.what) return trouble;
     const int unit = changed_unit(dynamics, state);
-    if (unit < 0) {
+    if (unit < 0 || (repeated > 0 && only_closes_late(dynamics, state))) {
       if (const int passed = passed_unit(dynamics, state, h); passed >= 0)
         return {"the gap", system_.units[passed].element, dynamics.event_value()[system_.units[passed].first_event], " m"};
       refuse_beyond_laws(system_, dynamics, state);
@@ -264,6 +296,13 @@ void TimeStepping::book_power(Dynamics& dynamics, State& state, double h) {
   state.work += h * dy_[n - 1];
 }
 
+// From its touch until its friction has stopped it an element that lands with a velocity slips, however short this is. Steps of zero length
+// have no landing.
+bool TimeStepping::slides_at_landing(const FrictionPart& part) const {
+  if (!part.has_landed || !part.block.sticks || !std::isnan(held_time_)) return false;
+  return std::any_of(part.landing_rate, part.landing_rate + part.dimension, [&](double rate) { return std::abs(rate) > part.noise; });
+}
+
 // Sets phase and anchor of each friction element, and adds the energy integrals of the part.
 void TimeStepping::finish_phases(Dynamics& dynamics, State& state, double h) {
   bool has_rejoined = false;
@@ -271,7 +310,7 @@ void TimeStepping::finish_phases(Dynamics& dynamics, State& state, double h) {
     const FrictionElement& element = *system_.frictions[part.friction].friction;
     FrictionState& friction = state.friction[part.friction];
     const RowSpec* rows = element.rows(friction);
-    if (!element.is_loaded(dynamics.evaluation(), friction)) continue; // an unloaded element is free
+    if (!part.is_loaded) continue; // it is free
     double rate[3] = {0, 0, 0};
     const bool stays = part.block.sticks && has_held(friction, part.friction);
     for (int r = 0; r < part.dimension; ++r) {
@@ -282,6 +321,11 @@ void TimeStepping::finish_phases(Dynamics& dynamics, State& state, double h) {
     friction.is_onset = false;
     friction.phase = part.block.sticks ? FrictionPhase::stick : FrictionPhase::slip;
     has_rejoined = has_rejoined || (part.block.sticks && !stays && element.is_rigid());
+    if (slides_at_landing(part)) {
+      friction.has_slipped = true;
+      friction.slid += 0.5 * h * std::abs(part.landing_rate[0]) * usage_of(dynamics.evaluation(), part); // stops in this share of the step
+      element.aim(friction, part.landing_rate);
+    }
     if (part.block.sticks) continue;
     friction.has_slipped = true;
     friction.slid += h * std::abs(rate[0]);

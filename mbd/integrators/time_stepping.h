@@ -20,12 +20,14 @@
 // The plain iteration diverges if friction changes its own normal force by more than its own amount (a ladder whose foot jams). Each
 // element is then solved with its bound as a linear function of its wrench (Newton's method).
 //
-// A step is accepted only if friction and normal forces have converged and contact modes agree with its end. Otherwise it is halved,
-// down to a millionth. (Example: the damper of a closing contact makes the force jump; if the step is long compared with m/c neither
-// mode is consistent.) If halving does not help the run stops.
+// A step is accepted only if friction and normal forces have converged and contact modes agree with its end. Otherwise it is halved, down
+// to a millionth. (Example: the damper of a closing contact makes the force jump; if the step is long compared with m/c neither mode is
+// consistent.) A contact for which neither mode is consistent, and which would close late in the step, closes at its end instead. If halving
+// does not help the run stops.
 //
-// A friction element that sticks at the end of a step may have slipped within it, because mean loads and the clamping pressure at the
-// end do not show peaks. Such steps are halved, too (inner_slips.cpp).
+// A friction element that sticks at the end of a step may have slipped within it, because means of loads and the clamping pressure at the
+// end do not show peaks. Such steps are halved, too (inner_slips.cpp). One that lands with a velocity along its row and sticks at the end
+// of that step has slipped in any case: its slip is reported, and the step is not halved for it.
 #pragma once
 
 #include "mbd/integrators/row_compliance.h"
@@ -67,6 +69,8 @@ private:
   struct FrictionPart {
     int friction = 0, first = 0, dimension = 0; ///< first: index of its first row
     bool has_slid = false;                      ///< the element slid at the end of the previous step
+    bool has_landed = false;                    ///< nothing pressed on it at the end of the previous step
+    double landing_rate[3] = {};                ///< if it has landed: rates of its rows at the start of the part
     bool is_kinetic = false;                    ///< the kinetic coefficient is used
     bool is_returned = false;                   ///< the element has got back its static coefficient in this step
     bool is_loaded = false;                     ///< the admissible set of wrenches is larger than {0}
@@ -109,6 +113,9 @@ private:
   [[noreturn]] void fail(const StepFailure& trouble, double t, double h) const;
   [[nodiscard]] int changed_unit(Dynamics& dynamics, State& state);
   [[nodiscard]] int passed_unit(const Dynamics& dynamics, const State& state, double h) const;
+  [[nodiscard]] bool repeats_modes(const State& state);
+  [[nodiscard]] bool only_closes_late(const Dynamics& dynamics, const State& state) const;
+  [[nodiscard]] bool slides_at_landing(const FrictionPart& part) const;
   void finish_phases(Dynamics& dynamics, State& state, double h);
   void book_power(Dynamics& dynamics, State& state, double h);
   // defined in inner_slips.cpp
@@ -163,6 +170,7 @@ private:
   Residual residual_;
   State start_;
   std::vector<double> start_event_value_, start_event_derivative_; ///< event functions and their rates at the start of the present part
+  std::vector<UnitMode> modes_made_;                               ///< modes of all passes of the part being made
   double longest_ = 0.0;                                           ///< longest step so far, s
   long extra_parts_ = 0;
   std::vector<FrictionPart> parts_;

@@ -73,6 +73,9 @@ void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
     FrictionPart part;
     part.friction = f;
     part.has_slid = slid_before(f);
+    part.has_landed = start_.friction[f].phase == FrictionPhase::free;
+    for (int r = 0; r < element.dimension() && part.has_landed; ++r)
+      part.landing_rate[r] = evaluate_row<false>(rows[r], dynamics.motion().data()).rate;
     part.first = rows_;
     part.dimension = element.dimension();
     parts_.push_back(part);

@@ -2,6 +2,7 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/base/stop.h"
+#include "mbd/run/findings.h"
 #include "mbd/run/with_settings.h"
 
 #include <stdexcept>
@@ -34,7 +35,8 @@ Run run_model(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& op
     if (options.progress) options.progress(t);
     if (!is_over) throw_if_stopped(options, t);
   };
-  simulation_asked.has_growth = options.has_extremes;
+  // Running extremes are read for criteria only. They are up to 128 copies of the ranges of all channels, which large scenes do not have room for.
+  simulation_asked.has_growth = options.has_extremes && is_judged(loaded->model);
   Simulation simulation(*loaded->system, options.start ? *options.start : initial_state_of(*loaded), std::move(simulation_asked));
   Run run;
   try {

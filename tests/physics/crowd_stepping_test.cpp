@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -40,18 +41,37 @@ std::string blocks_on_deck(int count, double most) {
   return text;
 }
 
+// The same blocks without loads and deck, let go above the ground from different heights, with a velocity along it.
+std::string blocks_above_ground(int count, double along) {
+  std::string text;
+  for (int i = 0; i < count; ++i) {
+    const std::string n = std::to_string(i);
+    const double x = i - 0.5 * count + 0.5, height = 1e-3 + 0.019 * (7 * i % count) / count;
+    text += body("block " + n, "mass = 10.0; inertia = 0.5; position = [" + std::to_string(x) + ", " + std::to_string(0.2 + height) +
+                                   "]; velocity = [" + std::to_string(along) + ", 0.0]");
+    for (const double side : {-0.2, 0.2})
+      text += element("unilateral_contact", (side < 0.0 ? "left foot " : "right foot ") + n,
+                      "a = { body = 'block " + n + "', point = [" + std::to_string(side) + ", -0.2] }; b = { body = 'ground', point = [" +
+                          std::to_string(x + side) + ", 0.0] }; stiffness = 1e7; damping = 1e3");
+    text += element("coulomb_stick", "friction " + n, "contacts = ['left foot " + n + "', 'right foot " + n + "']; static_friction = 0.3");
+  }
+  return text;
+}
+
 struct Crowd {
   std::unique_ptr<const System> system;
   std::unique_ptr<Dynamics> dynamics;
   State state;
+  long extra_parts = 0;
 
-  Crowd(int count, double most) : system(compile(scene(blocks_on_deck(count, most) + "\n[simulation]\nstep = 1e-3\n"))) {
+  explicit Crowd(const std::string& text) : system(compile(scene(text + "\n[simulation]\nstep = 1e-3\n"))) {
     dynamics = std::make_unique<Dynamics>(*system);
     state = system->initial_state();
   }
   void step(int steps) {
     TimeStepping stepping(*system);
     for (int i = 1; i <= steps; ++i) stepping.step(*dynamics, state, 1e-3 * i, 1e-12);
+    extra_parts = stepping.extra_parts();
   }
   // Returns the rate of a friction row at the state, m/s.
   [[nodiscard]] double rate(int friction) {
@@ -87,14 +107,15 @@ struct Crowd {
 TEST_CASE("moreau: what a force on one body of a crowd reaches does not grow with the crowd") {
   // Each block meets the deck only, so a row reaches these two, whatever the order of elimination: six of the unknowns.
   // Twice the blocks have twice the entries; the deck's own make the difference from two.
-  const double twenty = Crowd(20, 0.9).entries(), forty = Crowd(40, 0.9).entries(), eighty = Crowd(80, 0.9).entries();
+  const double twenty = Crowd(blocks_on_deck(20, 0.9)).entries(), forty = Crowd(blocks_on_deck(40, 0.9)).entries(),
+               eighty = Crowd(blocks_on_deck(80, 0.9)).entries();
   CHECK(forty <= 2.05 * twenty);
   CHECK(eighty <= 2.05 * forty);
 }
 
 TEST_CASE("moreau: a step of a crowd takes as many evaluations whatever the number of bodies") {
   const auto evaluations = [](int count) {
-    Crowd crowd(count, 0.9);
+    Crowd crowd(blocks_on_deck(count, 0.9));
     crowd.step(40);
     return static_cast<double>(crowd.dynamics->evaluations());
   };
@@ -109,7 +130,7 @@ TEST_CASE("moreau: a step of a crowd takes as many evaluations whatever the numb
 TEST_CASE("moreau: of a crowd that is pushed, those pushed beyond their bounds slide, and the others do not creep") {
   // The pushes are between 1/40 and 40/40 of 1.2 μ N: those of blocks 34 to 40 are beyond μ N, that of 33 is 0.99 of it.
   constexpr int k_blocks = 40;
-  Crowd crowd(k_blocks, 1.2);
+  Crowd crowd(blocks_on_deck(k_blocks, 1.2));
   crowd.step(40);
   for (int i = 0; i < k_blocks; ++i) {
     CAPTURE(i);
@@ -117,5 +138,58 @@ TEST_CASE("moreau: of a crowd that is pushed, those pushed beyond their bounds s
     CHECK(slips == (i >= 33));
     // Friction changes the velocity by 3e-3 m/s in a step, to 1e-8 of that (time_stepping.cpp); blocks that slide are faster than 1e-3 m/s.
     if (!slips) CHECK(std::abs(crowd.rate(i)) <= 3e-11);
+  }
+}
+
+TEST_CASE("moreau: the landings of a crowd do not multiply the steps of all") {
+  const auto land = [](int count) {
+    Crowd crowd(blocks_above_ground(count, 1e-3));
+    crowd.step(100); // the last block lands after 63 ms
+    CAPTURE(count);
+    // A landing is no reason to halve a step; with halves for each, 40 blocks had 26 parts more.
+    CHECK(crowd.extra_parts == 0);
+    return static_cast<double>(crowd.dynamics->evaluations());
+  };
+  // A step is repeated if any contact changes, and passes for all are made together. With more blocks more of the steps are repeated,
+  // but none is divided: the evaluations of a step grow far slower than the blocks.
+  const double ten = land(10), twenty = land(20), forty = land(40);
+  CHECK(twenty <= 1.25 * ten);
+  CHECK(forty <= 1.25 * twenty);
+}
+
+TEST_CASE("a block that lands with a velocity slips until its friction has stopped it, by every method") {
+  // It falls 1 mm and moves at 1 mm/s. μ N/m reaches 40 m/s² within a step, so it slides for a small part of a step and a micrometre at most.
+  constexpr double k_speed = 1e-3, k_step = 1e-3;
+  for (const char* method : {"moreau", "dop853"})
+    for (const double along : {k_speed, -k_speed, 0.0}) {
+      CAPTURE(std::string(method));
+      CAPTURE(along);
+      const std::unique_ptr<const System> system = compile(scene(blocks_above_ground(1, along) + "\n[simulation]\nstep = 1e-3\n"));
+      SimulationOptions options;
+      options.end = options.output_step = 0.02; // it lands after 14 ms
+      options.integrator = method;
+      options.settings.step = k_step;
+      const RunResult result = simulate(*system, system->initial_state(), options);
+      const auto found = [&](EventKind kind) {
+        return std::find_if(result.events.begin(), result.events.end(),
+                            [&](const Event& e) { return e.element == "friction 0" && e.kind == kind; });
+      };
+      const auto slip = found(along > 0.0 ? EventKind::slips_forward : EventKind::slips_backward);
+      CHECK((slip != result.events.end()) == (along != 0.0));
+      CHECK(found(EventKind::sticks) != result.events.end());
+      if (along != 0.0) CHECK(std::abs(slip->t - std::sqrt(2e-3 / 9.81)) <= 2.0 * k_step);
+    }
+}
+
+TEST_CASE("moreau: what a block slides at its landing is less than its velocity times the step") {
+  for (const double along : {1e-3, 0.0}) {
+    CAPTURE(along);
+    Crowd crowd(blocks_above_ground(1, along));
+    crowd.step(16); // it lands after 14 ms
+    const FrictionState& friction = crowd.state.friction[0];
+    CHECK(friction.phase == FrictionPhase::stick);
+    CHECK(friction.has_slipped == (along > 0.0));
+    CHECK((friction.slid > 0.0) == (along > 0.0));
+    CHECK(friction.slid <= along * 1e-3);
   }
 }
