@@ -1,6 +1,7 @@
 #include "elements/catalog.h"
 
 #include "elements/action.h"
+#include "elements/bearing.h"
 #include "elements/bushing.h"
 #include "elements/contact_group.h"
 #include "elements/coulomb_stick.h"
@@ -23,6 +24,7 @@
 #include "elements/machinery/tie.h"
 #include "elements/machinery/tyre.h"
 #include "elements/machinery/wound_rope.h"
+#include "elements/maxwell.h"
 #include "elements/motor.h"
 #include "elements/own_state.h"
 #include "elements/polygon_contact.h"
@@ -46,6 +48,7 @@ const Catalogue& element_catalog() {
     Catalogue c;
     c.elements = {&spring_damper_kind(),
                   &rotational_spring_damper_kind(),
+                  &maxwell_kind(),
                   &bushing_kind(),
                   &unilateral_contact_kind(),
                   &circle_contact_kind(),
@@ -70,6 +73,7 @@ const Catalogue& element_catalog() {
                   &motor_kind(),
                   &limit_kind(),
                   &joint_friction_kind(),
+                  &bearing_kind(),
                   &skate_kind(),
                   &rope_kind(),
                   &wound_rope_kind(),

@@ -25,6 +25,8 @@ void spring_damper(Sketch& s) { s.draw({"spring", style_of_spring(s), "force", s
 
 void rotational_spring_damper(Sketch& s) { s.draw({"arc", "spring", "couple", s.places(), {}, {}}); }
 
+void maxwell(Sketch& s) { s.draw({"spring", "both", "force", s.places(), s.direction("axis"), {}}); }
+
 void bushing(Sketch& s) { s.draw({"bushing", "", "", s.places(), {}, {}}); }
 
 void buffer(Sketch& s) { s.draw({"spring", "both", "force", s.places(), s.direction("axis"), {}}); }
@@ -268,6 +270,8 @@ Symbol symbol_of(const std::string& kind) {
   static const std::map<std::string, Symbol> symbols{{"spring_damper", spring_damper},
                                                      {"rotational_spring_damper", rotational_spring_damper},
                                                      {"bushing", bushing},
+                                                     {"bearing", pin},
+                                                     {"maxwell", maxwell},
                                                      {"buffer", buffer},
                                                      {"tie", tie},
                                                      {"rope", rope},
