@@ -5,6 +5,7 @@
 #include "elements/bushing.h"
 #include "elements/contact_group.h"
 #include "elements/coulomb_stick.h"
+#include "elements/drawn_outline.h"
 #include "elements/formula_force.h"
 #include "elements/gears.h"
 #include "elements/joint_friction.h"
@@ -87,8 +88,8 @@ const Catalogue& element_catalog() {
     c.signals = signal_kinds();
     c.signals.push_back(&shunting_kind());
     c.signals.push_back(&record_signal_kind());
-    c.tables = {&shape_kind(),   &beam_kind(), &contact_group_kind(), &own_state_kind(), &action_kind(),
-                &channel_kind(), &plot_kind(), &acceptance_kind(),    &case_kind(),      &look_kind()};
+    c.tables = {&drawn_outline_kind(), &shape_kind(), &beam_kind(),       &contact_group_kind(), &own_state_kind(), &action_kind(),
+                &channel_kind(),       &plot_kind(),  &acceptance_kind(), &case_kind(),          &look_kind()};
     return c;
   }();
   return catalogue;

@@ -1,5 +1,6 @@
 #include "elements/contact_group.h"
 
+#include "elements/drawn_outline.h"
 #include "elements/polygon_contact.h"
 #include "elements/shape.h"
 #include "mbd/base/name_pattern.h"
@@ -9,6 +10,7 @@
 #include "mbd/model/model_building.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -23,7 +25,10 @@ bool has(const Names& names, const std::string& name) { return std::find(names.b
 class GroupMaker {
 public:
   GroupMaker(const ContactGroup& group, Model& model) : group_(group), model_(model) {
-    for (const Body& body : model.bodies) bodies_.push_back(body.name);
+    for (const Body& body : model.bodies) {
+      order_.emplace(body.name, bodies_.size());
+      bodies_.push_back(body.name);
+    }
   }
 
   void make() {
@@ -64,21 +69,23 @@ private:
   }
   // A body without outline would be an error of each of its pairs.
   void check_outlines(const std::string& field, const Names& members) {
-    for (const Body& body : model_.bodies) {
-      const auto shapes = tables_of<BodyShape>(std::as_const(model_));
-      const bool has_shape = std::any_of(shapes.begin(), shapes.end(), [&](const BodyShape* shape) { return shape->body == body.name; });
-      if (body.outline.empty() && !has_shape && has(members, body.name)) error(field, "'" + body.name + "' has no outline: give it one");
-    }
+    Names outlined; // by tables that are applied later
+    for (const BodyShape* shape : tables_of<BodyShape>(model_)) outlined.push_back(shape->body);
+    for (const DrawnOutline* drawing : tables_of<DrawnOutline>(model_)) outlined.push_back(drawing->body);
+    for (const Body& body : model_.bodies)
+      if (body.outline.empty() && !has(outlined, body.name) && has(members, body.name))
+        error(field, "'" + body.name + "' has no outline: give it one");
   }
   void add_pairs(const Names& ones, const Names& others) {
     std::set<std::pair<std::string, std::string>> made;
     std::vector<std::pair<std::string, std::string>> pairs;
-    const auto is_later = [&](const std::string& one, const std::string& other) {
-      return std::find(bodies_.begin(), bodies_.end(), one) > std::find(bodies_.begin(), bodies_.end(), other);
+    const std::set<std::string> in_a(ones.begin(), ones.end()), in_b(others.begin(), others.end());
+    const auto is_made_the_other_way = [&](const std::string& one, const std::string& other) {
+      return in_a.count(other) > 0 && in_b.count(one) > 0 && order_.at(other) > order_.at(one);
     };
     for (const std::string& one : ones)
       for (const std::string& other : others) {
-        if (one == other || (has(ones, other) && has(others, one) && is_later(other, one))) continue;
+        if (one == other || is_made_the_other_way(one, other)) continue;
         if (made.insert(std::minmax(one, other)).second) pairs.emplace_back(one, other);
       }
     if (pairs.empty()) error("", "makes no contact: 'a' and 'b' are the same single body");
@@ -103,6 +110,7 @@ private:
   const ContactGroup& group_;
   Model& model_;
   Names bodies_;
+  std::map<std::string, std::size_t> order_; ///< of the bodies in the model
   std::vector<Diagnostic> problems_;
 };
 
