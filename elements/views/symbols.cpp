@@ -16,8 +16,9 @@ namespace {
 // --- springs, rods, ropes and drives --------------------------------------------------------------
 
 std::string style_of_spring(const Sketch& s) {
-  const bool has_spring = s.number("stiffness") > 0.0 || !s.points("force_table").empty();
-  const bool has_damper = s.number("damping") > 0.0 || !s.points("damping_table").empty();
+  const bool has_spring =
+      s.number("stiffness") > 0.0 || s.is_given("frequency") || !s.text("material").empty() || !s.points("force_table").empty();
+  const bool has_damper = s.number("damping") > 0.0 || s.is_given("damping_ratio") || !s.points("damping_table").empty();
   return has_damper ? (has_spring ? "both" : "damper") : "";
 }
 
