@@ -1,8 +1,11 @@
 #include "elements/catalog.h"
 
 #include "elements/action.h"
+#include "elements/bearing.h"
 #include "elements/bushing.h"
+#include "elements/contact_group.h"
 #include "elements/coulomb_stick.h"
+#include "elements/drawn_outline.h"
 #include "elements/formula_force.h"
 #include "elements/gears.h"
 #include "elements/joint_friction.h"
@@ -22,6 +25,7 @@
 #include "elements/machinery/tie.h"
 #include "elements/machinery/tyre.h"
 #include "elements/machinery/wound_rope.h"
+#include "elements/maxwell.h"
 #include "elements/motor.h"
 #include "elements/own_state.h"
 #include "elements/polygon_contact.h"
@@ -45,6 +49,7 @@ const Catalogue& element_catalog() {
     Catalogue c;
     c.elements = {&spring_damper_kind(),
                   &rotational_spring_damper_kind(),
+                  &maxwell_kind(),
                   &bushing_kind(),
                   &unilateral_contact_kind(),
                   &circle_contact_kind(),
@@ -69,6 +74,7 @@ const Catalogue& element_catalog() {
                   &motor_kind(),
                   &limit_kind(),
                   &joint_friction_kind(),
+                  &bearing_kind(),
                   &skate_kind(),
                   &rope_kind(),
                   &wound_rope_kind(),
@@ -82,8 +88,8 @@ const Catalogue& element_catalog() {
     c.signals = signal_kinds();
     c.signals.push_back(&shunting_kind());
     c.signals.push_back(&record_signal_kind());
-    c.tables = {&shape_kind(), &beam_kind(),       &own_state_kind(), &action_kind(), &channel_kind(),
-                &plot_kind(),  &acceptance_kind(), &case_kind(),      &look_kind()};
+    c.tables = {&drawn_outline_kind(), &shape_kind(), &beam_kind(),       &contact_group_kind(), &own_state_kind(), &action_kind(),
+                &channel_kind(),       &plot_kind(),  &acceptance_kind(), &case_kind(),          &look_kind()};
     return c;
   }();
   return catalogue;

@@ -193,7 +193,7 @@ const ElementKind& joint_friction_kind() {
     ElementKind k;
     k.name = "joint_friction";
     k.doc = "Dry friction with a given bound on a coordinate of a against b, as of a preloaded bearing or guide, a brake or a "
-            "clutch: sticks exactly while it takes no more than 'holds'. It does not follow the joint's reaction.";
+            "clutch: sticks exactly while it takes no more than 'holds'. Friction that follows the joint's reaction is that of a bearing.";
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that is held");
     f.add("b", &T::b).as(FieldType::marker).doc("marker whose axes count");

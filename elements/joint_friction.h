@@ -4,7 +4,7 @@
 //
 // The bound is a constant (a preloaded bearing, a seal) or a function of time, not μ times the joint's reaction. Reactions are multipliers,
 // and with bounds that depend on them the mode problem (docs/explanation/theory.md) would not be convex and could have several solutions or
-// none (Painlevé). For friction that depends on a load use coulomb_stick, where the normal force is a function of the state.
+// none (Painlevé). For friction that depends on a load use bearing or coulomb_stick, whose reaction is a function of the state.
 #pragma once
 
 #include "mbd/model/model.h"

@@ -377,16 +377,14 @@ bool is_half_plane(const PolygonContact& e, const SystemBuilder& builder) {
 
 bool check(const PolygonContact& e, SystemBuilder& builder) {
   bool is_bad = false;
-  const auto fail = [&](const char* message) {
+  const auto fail = [&](const std::string& message) {
     builder.error(message);
     is_bad = true;
   };
   if (builder.marker(e.a).body == builder.marker(e.b).body) fail("touches its own body: name markers on two different bodies");
   if (e.normal && !e.outline_b.empty()) fail("give one of 'normal' (b is a half-plane) and 'outline_b'");
   if (e.normal && !(e.normal->norm() > 0.0)) fail("'normal' has no direction");
-  if (e.kinetic_friction && !e.static_friction) fail("'kinetic_friction' needs 'static_friction'");
-  if (e.static_friction && e.kinetic_friction.value_or(0.0) > *e.static_friction)
-    fail("'kinetic_friction' must not exceed 'static_friction'");
+  if (const std::string problem = friction_problem(e.static_friction, e.kinetic_friction); !problem.empty()) fail(problem);
   return !is_bad;
 }
 
@@ -480,6 +478,12 @@ ContactDescription describe(const Element& element, const Model& model) {
 
 } // namespace
 
+std::string friction_problem(std::optional<double> static_friction, std::optional<double> kinetic_friction) {
+  if (!kinetic_friction) return "";
+  if (!static_friction) return "'kinetic_friction' needs 'static_friction'";
+  return *kinetic_friction > *static_friction ? "'kinetic_friction' must not exceed 'static_friction'" : "";
+}
+
 const ElementKind& polygon_contact_kind() {
   static const ElementKind kind = [] {
     using T = PolygonContact;
@@ -495,16 +499,7 @@ const ElementKind& polygon_contact_kind() {
         .in("m")
         .doc("corners in marker b's axes; default: the outline of its body, of the ground the half-plane below marker b");
     f.add("normal", &T::normal).doc("b is the half-plane behind the line through marker b; in marker b's axes, towards a");
-    f.add("stiffness", &T::stiffness)
-        .in("N/m^2")
-        .positive()
-        .required()
-        .doc("pressure of faces on each other for each metre of depth: k of a width w is w times this");
-    f.add("dissipation", &T::dissipation).in("s/m").not_negative().doc("Hunt-Crossley: factor 1 - alpha d'");
-    f.add("static_friction", &T::static_friction).not_negative().doc("mu_s; default: no friction");
-    f.add("kinetic_friction", &T::kinetic_friction).not_negative().doc("mu_k; default: mu_s");
-    f.add("source", &T::source)
-        .doc("where the coefficients come from: above 0.8 results name it, from 1.2 on no verdict is hold without it");
+    add_contact_law<T>(f);
     k.holds<T>();
     k.compile = compile_polygon;
     k.contact = describe;

@@ -33,4 +33,20 @@ struct PolygonContact : Element {
 
 [[nodiscard]] const ElementKind& polygon_contact_kind();
 
+/// Adds the fields of the contact law to the kind of T, which has the members of PolygonContact from `stiffness` on.
+template <class T> void add_contact_law(FieldTable& fields) {
+  fields.add("stiffness", &T::stiffness)
+      .in("N/m^2")
+      .positive()
+      .required()
+      .doc("pressure of faces on each other for each metre of depth: k of a width w is w times this");
+  fields.add("dissipation", &T::dissipation).in("s/m").not_negative().doc("Hunt-Crossley: factor 1 - alpha d'");
+  fields.add("static_friction", &T::static_friction).not_negative().doc("mu_s; default: no friction");
+  fields.add("kinetic_friction", &T::kinetic_friction).not_negative().doc("mu_k; default: mu_s");
+  fields.add("source", &T::source)
+      .doc("where the coefficients come from: above 0.8 results name it, from 1.2 on no verdict is hold without it");
+}
+/// Returns what is wrong with the coefficients as an error message; "" if nothing is.
+[[nodiscard]] std::string friction_problem(std::optional<double> static_friction, std::optional<double> kinetic_friction);
+
 } // namespace steplap

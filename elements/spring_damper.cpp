@@ -1,9 +1,13 @@
 #include "elements/spring_damper.h"
 
+#include "elements/pad.h"
 #include "elements/space_distance.h"
 #include "elements/spring_laws.h"
 #include "mbd/system/measured_channel.h"
 #include "mbd/system/system.h"
+
+#include <cmath>
+#include <numbers>
 
 namespace steplap {
 
@@ -15,6 +19,19 @@ bool is_increasing(const std::vector<Vec2>& table) {
   return true;
 }
 
+// Returns what is wrong with the ways to give stiffness and damping, "" if nothing is.
+std::string constants_problem(const SpringDamper& e) {
+  const bool has_stiffness = e.stiffness != 0.0 || !e.force_table.empty();
+  if (std::string problem = pad_of(e).problem(has_stiffness); !problem.empty()) return problem;
+  if (e.carries && !e.frequency && !e.damping_ratio) return "'carries' goes with 'frequency' or 'damping_ratio'";
+  if (!e.carries && (e.frequency || e.damping_ratio))
+    return "'frequency' and 'damping_ratio' are of a mass on the spring: give it as 'carries'";
+  if (e.frequency && (has_stiffness || !e.material.empty())) return "give either 'frequency' or a stiffness, not both";
+  if (!e.damping_ratio) return "";
+  if (e.damping != 0.0 || !e.damping_table.empty()) return "give either 'damping_ratio' or a damping, not both";
+  return constants_of(e).k > 0.0 ? "" : "'damping_ratio' needs 'frequency', 'stiffness' or a pad";
+}
+
 // Checks the fields; `free` and `table` are the names of the fields in messages.
 bool check(const SpringDamper& e, SystemBuilder& builder, const std::string& free = "'free_length'",
            const std::string& table = "'force_table'") {
@@ -23,8 +40,11 @@ bool check(const SpringDamper& e, SystemBuilder& builder, const std::string& fre
     return is_wrong;
   };
   bool is_bad = refuses_across(builder, e.axis.has_value(), e.across);
+  const std::string problem = constants_problem(e);
+  if (fails(!problem.empty(), problem)) return false;
+  const SpringConstants constants = constants_of(e);
   is_bad |= fails(e.preload && e.free_length, "give either 'preload' or " + free + ", not both");
-  is_bad |= fails(e.preload && *e.preload != 0.0 && e.stiffness == 0.0, "'preload' needs a 'stiffness'");
+  is_bad |= fails(e.preload && *e.preload != 0.0 && constants.k == 0.0, "'preload' needs a 'stiffness'");
   is_bad |= fails(!e.force_table.empty() && e.stiffness != 0.0, "give either 'stiffness' or " + table + ", not both");
   is_bad |= fails(!e.damping_table.empty() && e.damping != 0.0, "give either 'damping' or 'damping_table', not both");
   is_bad |= fails(e.force_table.size() == 1 || e.damping_table.size() == 1, "a table needs at least two points");
@@ -36,7 +56,7 @@ bool check(const SpringDamper& e, SystemBuilder& builder, const std::string& fre
                   "a table may have at most 65536 points");
   is_bad |= fails(e.between != "lines" && e.force_table.empty() && e.damping_table.empty(),
                   "'between' says how the points of a table are joined: give " + table + " or 'damping_table'");
-  is_bad |= fails(e.stiffness == 0.0 && e.damping == 0.0 && e.force_table.empty() && e.damping_table.empty(),
+  is_bad |= fails(constants.k == 0.0 && constants.c == 0.0 && e.force_table.empty() && e.damping_table.empty(),
                   "gives no force: set 'stiffness', 'damping' or a table");
   return !is_bad;
 }
@@ -70,14 +90,15 @@ template <class Measure, class Law> void add(SystemBuilder& builder, int a, int 
 
 template <class Measure> void add_with_law(const SpringDamper& e, SystemBuilder& builder, int a, int b, const Measure& measure) {
   const double n = static_cast<double>(e.count);
-  const double k = n * e.stiffness, c = n * e.damping;
+  const SpringConstants one = constants_of(e);
+  const double k = n * one.k, c = n * one.c;
   const double now = measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
   double free = e.free_length.value_or(now);
   if (e.preload && k > 0.0) free = now + *e.preload / k;
   if (!e.force_table.empty() || !e.damping_table.empty()) {
     auto spring = e.force_table, damper = e.damping_table;
-    if (spring.empty()) spring = {{-1.0, -e.stiffness}, {1.0, e.stiffness}};
-    if (damper.empty()) damper = {{-1.0, -e.damping}, {1.0, e.damping}};
+    if (spring.empty()) spring = {{-1.0, -one.k}, {1.0, one.k}};
+    if (damper.empty()) damper = {{-1.0, -one.c}, {1.0, one.c}};
     if (e.between == "curve") add(builder, a, b, measure, SmoothSpring{SmoothCurve(spring), SmoothCurve(damper), free, n});
     else add(builder, a, b, measure, TabulatedSpring{PiecewiseLinear(spring), PiecewiseLinear(damper), free, n});
   } else if (e.gap > 0.0) {
@@ -121,6 +142,18 @@ void compile_rotational(const Element& element, SystemBuilder& builder) {
 
 } // namespace
 
+SpringConstants constants_of(const SpringDamper& spring) {
+  const double n = static_cast<double>(spring.count);
+  SpringConstants one{spring.stiffness, spring.damping};
+  if (!spring.material.empty()) one.k = pad_of(spring).stiffness();
+  if (spring.frequency) {
+    const double omega = 2.0 * std::numbers::pi * *spring.frequency;
+    one.k = *spring.carries * omega * omega / n;
+  }
+  if (spring.damping_ratio) one.c = 2.0 * *spring.damping_ratio * std::sqrt(n * one.k * *spring.carries) / n;
+  return one;
+}
+
 const ElementKind& spring_damper_kind() {
   static const ElementKind kind = [] {
     using T = SpringDamper;
@@ -135,6 +168,10 @@ const ElementKind& spring_damper_kind() {
     f.add("across", &T::across).in("m").not_negative().doc("distance of its ends across the plane; its length is that in space");
     f.add("stiffness", &T::stiffness).in("N/m").not_negative().doc("k of one element");
     f.add("damping", &T::damping).in("N s/m").not_negative().doc("c of one element");
+    f.add("carries", &T::carries).in("kg").positive().doc("mass on all of them, for frequency and damping_ratio");
+    f.add("frequency", &T::frequency).in("Hz").positive().doc("of that mass on them, instead of stiffness: k = m (2 pi f)^2");
+    f.add("damping_ratio", &T::damping_ratio).not_negative().doc("of that mass, instead of damping: c = 2 zeta sqrt(k m)");
+    add_pad_fields<T>(f);
     f.add("count", &T::count).at_least(1).doc("equal elements side by side");
     f.add("free_length", &T::free_length).in("m").doc("distance at which it gives no force; default: that of the reference pose");
     f.add("preload", &T::preload).in("N").doc("force f of all in the reference pose, instead of free_length");

@@ -14,12 +14,15 @@ struct SpringDamper : Element {
   std::optional<Vec2> axis; ///< direction of the spring in marker b's axes; not given: the line between the markers
   double across = 0.0;      ///< distance of the ends across the plane, m
   double stiffness = 0.0, damping = 0.0;
-  std::optional<double> free_length; ///< value of the measure at zero force, m
-  std::optional<double> preload;     ///< force f in the reference pose, N
-  double gap = 0.0;                  ///< width of the dead band around the free length, m
-  std::vector<Vec2> force_table;     ///< points (δ, −f), replace stiffness
-  std::vector<Vec2> damping_table;   ///< points (δ̇, −f), replace damping
-  std::string between = "lines";     ///< interpolation of the tables: "lines", whose kinks are events, or "curve"
+  std::optional<double> carries, frequency, damping_ratio; ///< mass on all of them, kg; its frequency on them, Hz; ratio of its damping
+  std::string material;                                    ///< of a pad (pad.h)
+  std::optional<double> area, thickness;                   ///< of a pad, m², m
+  std::optional<double> free_length;                       ///< value of the measure at zero force, m
+  std::optional<double> preload;                           ///< force f in the reference pose, N
+  double gap = 0.0;                                        ///< width of the dead band around the free length, m
+  std::vector<Vec2> force_table;                           ///< points (δ, −f), replace stiffness
+  std::vector<Vec2> damping_table;                         ///< points (δ̇, −f), replace damping
+  std::string between = "lines";                           ///< interpolation of the tables: "lines", whose kinks are events, or "curve"
   long count = 1;
 };
 
@@ -35,6 +38,14 @@ struct RotationalSpringDamper : Element {
   std::string between = "lines";   ///< interpolation of the tables: "lines" or "curve"
   long count = 1;
 };
+
+/// Stiffness and damping of one of the elements side by side.
+struct SpringConstants {
+  double k = 0.0, c = 0.0; ///< N/m, N s/m
+};
+/// Returns them: as given, of a pad, or by the frequency f and damping ratio ζ of the mass m that all n elements carry, n k = m (2πf)² and
+/// n c = 2ζ √(n k m).
+[[nodiscard]] SpringConstants constants_of(const SpringDamper& spring);
 
 [[nodiscard]] const ElementKind& spring_damper_kind();
 [[nodiscard]] const ElementKind& rotational_spring_damper_kind();

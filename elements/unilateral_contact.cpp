@@ -2,6 +2,7 @@
 
 #include "elements/contact_laws.h"
 #include "elements/ended_contact.h"
+#include "elements/pad.h"
 #include "elements/restitution.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/system/contact_description.h"
@@ -28,10 +29,7 @@ LawGroup<Measure, Law>& add(const ContactGeometry& g, const Measure& measure, co
   return group;
 }
 
-GivenDamper damper_of(const UnilateralContact& e) {
-  const double n = static_cast<double>(e.count);
-  return {n * e.damping, n * e.stiffness, e.restitution};
-}
+GivenDamper damper_of(const UnilateralContact& e) { return {static_cast<double>(e.count) * e.damping, stiffness_of(e), e.restitution}; }
 
 // Sets the damping of the contact added last to `group`.
 template <class Group> void damp(Group& group, const UnilateralContact& e, const ContactGeometry& g, SystemBuilder& builder) {
@@ -68,12 +66,15 @@ template <class Law> EndedContactGroup<Law>& add_ended(const ContactGeometry& g,
 bool check(const UnilateralContact& e, SystemBuilder& builder) {
   const int given = e.preload.has_value() + e.interference.has_value() + e.gap.has_value();
   bool is_bad = false;
-  const auto fail = [&](const char* message) {
+  const auto fail = [&](const std::string& message) {
     builder.error(message);
     is_bad = true;
   };
+  const std::string problem = pad_of(e).problem(e.stiffness.has_value());
+  if (!problem.empty()) fail(problem);
+  else if (!e.stiffness && e.material.empty()) fail("needs 'stiffness', or a pad by 'material', 'area' and 'thickness'");
+  if (!e.material.empty() && e.exponent != 1.0) fail("a pad by 'material' has a linear stiffness: leave 'exponent' out");
   if (given > 1) fail("give one of 'preload', 'interference' and 'gap'");
-  if (e.preload && e.stiffness == 0.0) fail("'preload' needs a 'stiffness'");
   if (e.normal.norm() == 0.0) fail("'normal' has no direction");
   if (e.axis && e.axis->norm() == 0.0) fail("'axis' has no direction");
   if (e.law == "hunt_crossley" && e.damping != 0.0) fail("Hunt-Crossley takes 'dissipation' instead of 'damping'");
@@ -110,12 +111,12 @@ void add_contact(const UnilateralContact& e, SystemBuilder& builder) {
     if (!(dot(normal, axis) > 0.0)) return builder.error("the contact axis must point away from the line: normal · axis > 0 is required");
   }
   const double now = g.gap.at<false, double>(a, b).value;
-  const double n = static_cast<double>(e.count), k = n * e.stiffness;
+  const double k = stiffness_of(e);
   double offset = 0.0;
   if (e.gap) offset = now - *e.gap;
   if (e.interference) offset = now + *e.interference;
   if (e.preload) offset = now + portable::pow(*e.preload / k, 1.0 / e.exponent);
-  const double c = n * e.damping; // if a restitution is given, damp() replaces c when the joints are known
+  const double c = static_cast<double>(e.count) * e.damping; // a restitution sets it when the joints are known
   const KelvinVoigtContact kelvin_voigt{k, c, offset};
   if (e.ends) {
     if (e.law == "literal") add_ended(g, *e.ends, AdhesiveKelvinVoigtContact{k, c, offset}, builder);
@@ -142,6 +143,10 @@ void compile_contact(const Element& element, SystemBuilder& builder) {
 }
 
 } // namespace
+
+double stiffness_of(const UnilateralContact& contact) {
+  return static_cast<double>(contact.count) * (contact.material.empty() ? contact.stiffness.value_or(0.0) : pad_of(contact).stiffness());
+}
 
 ContactGeometry contact_geometry(const UnilateralContact& contact, const SystemBuilder& builder) {
   const CompiledMarker a = builder.marker(contact.a), b = builder.marker(contact.b);
@@ -175,7 +180,8 @@ const ElementKind& unilateral_contact_kind() {
     f.add("law", &T::law)
         .one_of({"kelvin_voigt", "literal", "hunt_crossley"})
         .doc("kelvin_voigt: max(0, -k d - c d'); literal: -k d - c d', may pull; hunt_crossley");
-    f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc("k of one element (Hunt-Crossley: per m^exponent)");
+    f.add("stiffness", &T::stiffness).in("N/m").positive().doc("k of one element (Hunt-Crossley: per m^exponent)");
+    add_pad_fields<T>(f);
     f.add("damping", &T::damping).in("N s/m").not_negative().doc("c of one element");
     f.add("restitution", &T::restitution)
         .positive()

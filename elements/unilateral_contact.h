@@ -15,9 +15,12 @@ class SystemBuilder;
 
 struct UnilateralContact : Element {
   std::string a, b = "ground";
-  Vec2 normal{0.0, 1.0};    ///< normal of the line in marker b's axes, towards a
-  std::optional<Vec2> axis; ///< contact axis in marker a's axes; not given: the normal
-  double stiffness = 0.0, damping = 0.0;
+  Vec2 normal{0.0, 1.0};           ///< normal of the line in marker b's axes, towards a
+  std::optional<Vec2> axis;        ///< contact axis in marker a's axes; not given: the normal
+  std::optional<double> stiffness; ///< k of one element
+  double damping = 0.0;
+  std::string material;                  ///< of a pad instead of the stiffness (pad.h)
+  std::optional<double> area, thickness; ///< of a pad, m², m
   std::string law = "kelvin_voigt";
   std::optional<double> restitution;  ///< coefficient of restitution, replaces damping (restitution.h)
   double exponent = 1.0;              ///< exponent n of the Hunt–Crossley law
@@ -28,6 +31,9 @@ struct UnilateralContact : Element {
   std::optional<Vec2> ends;           ///< coordinates of the ends along the face from marker b, m (ended_contact.h)
   long count = 1;
 };
+
+/// Returns the stiffness of all elements side by side, as given or of a pad, N/m (Hunt–Crossley: N/mⁿ).
+[[nodiscard]] double stiffness_of(const UnilateralContact& contact);
 
 /// Bodies and geometry of a contact, for friction elements that refer to it.
 struct ContactGeometry {

@@ -5,6 +5,7 @@
 #include "elements/limit.h"
 #include "elements/machinery/rope.h"
 #include "elements/own_state.h"
+#include "elements/pad.h"
 #include "elements/shape.h"
 #include "elements/spring_damper.h"
 #include "elements/step_lap/step_lap_assessment.h"
@@ -16,6 +17,8 @@
 #include "elements/views/start_checks.h"
 #include "elements/views/stepped_feet.h"
 #include "elements/views/symbols.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/model/entries.h"
 
 #include <utility>
 
@@ -69,6 +72,25 @@ std::vector<Finding> unlike_shapes(const Model& model) {
   return findings;
 }
 
+// Notes a pad whose modulus no document states.
+template <class T> void note_assumed_pads(const Model& model, std::vector<Finding>& findings) {
+  for (const T* element : elements_of<T>(model)) {
+    const PadMaterial* const material = pad_of(*element).known_material();
+    if (!material || !material->is_assumed()) continue;
+    findings.push_back({"assumed_pad", FindingLevel::note,
+                        "'" + element->name + "': the modulus of '" + material->name + "', " + rounded_text(material->modulus * 1e-6) +
+                            " MPa, is " + material->source + ". Give 'stiffness' where it is known, or vary it",
+                        element->where});
+  }
+}
+
+std::vector<Finding> assumed_pads(const Model& model) {
+  std::vector<Finding> findings;
+  note_assumed_pads<SpringDamper>(model, findings);
+  note_assumed_pads<UnilateralContact>(model, findings);
+  return findings;
+}
+
 } // namespace
 
 KindViews element_views() {
@@ -83,7 +105,7 @@ KindViews element_views() {
   views.elements[&limit_kind()].check_poses = check_stops;
   views.elements[&step_lap_joint_kind()].assess = assess;
   views.elements[&step_lap_interface_kind()].sheets = sheets_of;
-  views.value_checks = {unlike_shapes};
+  views.value_checks = {unlike_shapes, assumed_pads};
   views.scene_checks = {doubled_corners};
   views.assembly_checks = {far_joints, stepped_feet};
   return views;

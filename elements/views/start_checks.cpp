@@ -28,8 +28,8 @@ void check_gap(StartScene& scene, const ContactAtStart& contact, const Unilatera
   Vec2 along = normal;
   if (foot.axis) along = rotated(*foot.axis, a.angle + at.z()).normalized();
   const double now = normal.dot(p_a - p_b) / normal.dot(along);
-  const double depth = foot.preload ? portable::pow(*foot.preload / (foot.stiffness * static_cast<double>(foot.count)), 1.0 / foot.exponent)
-                                    : foot.interference.value_or(0.0);
+  const double depth =
+      foot.preload ? portable::pow(*foot.preload / stiffness_of(foot), 1.0 / foot.exponent) : foot.interference.value_or(0.0);
   const double off =
       foot.gap ? now - *foot.gap : std::min({now, now + depth}, [](double x, double y) { return std::abs(x) < std::abs(y); });
   if (!(std::abs(off) > StartScene::k_off * size_of_pair(scene.system, contact.a, contact.b))) return;

@@ -16,14 +16,17 @@ namespace {
 // --- springs, rods, ropes and drives --------------------------------------------------------------
 
 std::string style_of_spring(const Sketch& s) {
-  const bool has_spring = s.number("stiffness") > 0.0 || !s.points("force_table").empty();
-  const bool has_damper = s.number("damping") > 0.0 || !s.points("damping_table").empty();
+  const bool has_spring =
+      s.number("stiffness") > 0.0 || s.is_given("frequency") || !s.text("material").empty() || !s.points("force_table").empty();
+  const bool has_damper = s.number("damping") > 0.0 || s.is_given("damping_ratio") || !s.points("damping_table").empty();
   return has_damper ? (has_spring ? "both" : "damper") : "";
 }
 
 void spring_damper(Sketch& s) { s.draw({"spring", style_of_spring(s), "force", s.places(), s.direction("axis"), {}}); }
 
 void rotational_spring_damper(Sketch& s) { s.draw({"arc", "spring", "couple", s.places(), {}, {}}); }
+
+void maxwell(Sketch& s) { s.draw({"spring", "both", "force", s.places(), s.direction("axis"), {}}); }
 
 void bushing(Sketch& s) { s.draw({"bushing", "", "", s.places(), {}, {}}); }
 
@@ -268,6 +271,8 @@ Symbol symbol_of(const std::string& kind) {
   static const std::map<std::string, Symbol> symbols{{"spring_damper", spring_damper},
                                                      {"rotational_spring_damper", rotational_spring_damper},
                                                      {"bushing", bushing},
+                                                     {"bearing", pin},
+                                                     {"maxwell", maxwell},
                                                      {"buffer", buffer},
                                                      {"tie", tie},
                                                      {"rope", rope},

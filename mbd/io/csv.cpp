@@ -2,9 +2,7 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/io/digest.h"
-#include "mbd/io/input_files.h"
-#include "mbd/io/read_input.h"
+#include "mbd/io/named_file.h"
 
 #include <algorithm>
 #include <bit>
@@ -209,12 +207,7 @@ std::size_t CsvTable::column(const std::string& name_or_number, const Location& 
 CsvTable parse_csv(const std::string& text, const std::string& file_name) { return CsvReader(file_name).read(text); }
 
 CsvTable read_csv(const std::string& path, const Location& where, const std::string& wanted) {
-  const std::string text = read_input(path, where, "the record ");
-  note_input(path, text, true);
-  if (!wanted.empty() && sha256(text) != wanted)
-    throw ModelError(where, "the record '" + path + "' is not the one that was meant: its SHA-256 is " + sha256(text) +
-                                ". Take the file of that time, or drop 'sha256' to take this one");
-  return parse_csv(text, path);
+  return parse_csv(read_named_file(path, where, "the record ", wanted), path);
 }
 
 std::string csv_field(const std::string& text) {

@@ -4,6 +4,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/io/input_files.h"
 #include "mbd/io/read_input.h"
+#include "mbd/io/units.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -221,6 +222,7 @@ private:
     Node over = parse_toml(source.text, &source.file);
     refuse_long_tables(over);
     take_format(over, source.file);
+    take_outline_unit(over);
     Node base;
     base.file = &source.file;
     if (const Node* extends = over.find("extends")) base = load_base(*extends, file);
@@ -235,6 +237,34 @@ private:
     if (const Node* format = root.find("format")) check_format(*format);
     else add_once(document_.files_without_format, file);
     root.erase("format");
+  }
+
+  // So is `outline_unit`: plain numbers of its outlines are in that unit.
+  void take_outline_unit(Node& root) {
+    const Node* const unit = root.find("outline_unit");
+    if (!unit) return;
+    const Quantity one = parse_quantity("1 " + unit->text(), "m");
+    const double factor = unit->text().empty() ? 0.0 : one.value;
+    if (!(factor > 0.0)) document_.problems.push_back({unit->where(), "'outline_unit' must be a unit of length, as in \"mm\""});
+    else scale_outlines(root, factor);
+    root.erase("outline_unit");
+  }
+
+  static void scale_outlines(Node& table, double factor) {
+    for (Node& child : table.children) {
+      const bool is_outline = child.key == "outline" || child.key == "outline_a" || child.key == "outline_b" || child.key == "holes" ||
+                              child.key == "hole_centres";
+      is_outline ? scale_numbers(child, factor) : scale_outlines(child, factor);
+    }
+  }
+
+  static void scale_numbers(Node& node, double factor) {
+    if (const long* const whole = std::get_if<long>(&node.scalar); whole && node.type == Node::Type::integer) {
+      node.scalar = static_cast<double>(*whole);
+      node.type = Node::Type::number;
+    }
+    if (node.type == Node::Type::number) node.scalar = factor * std::get<double>(node.scalar);
+    for (Node& child : node.children) scale_numbers(child, factor);
   }
 
   void check_format(const Node& format) {

@@ -14,17 +14,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Calls visit(entry, name) for every [[signal]] entry in `root` that names a file.
+// Calls `visit` with the entry for every file that it names.
+template <class Entry, class Visit> void visit_files_of(Entry& entry, const FieldTable& fields, const Visit& visit) {
+  for (const Field& field : fields.fields())
+    if (auto* const name = entry.find(field.name); field.type == FieldType::file && name && !name->text().empty()) visit(entry, *name);
+}
+
+// Calls `visit` with every entry of a signal or table in `root` that names a file, and with that name.
 template <class Root, class Visit> void visit_named_files(Root& root, const Catalogue& catalogue, const Visit& visit) {
+  for (const TableKind* kind : catalogue.tables)
+    if (auto* const tables = root.find(kind->name); tables && tables->is_array_of_tables())
+      for (auto& entry : tables->children) visit_files_of(entry, kind->fields, visit);
   auto* const signals = root.find("signal");
   if (!signals || !signals->is_array_of_tables()) return;
   for (auto& entry : signals->children) {
     const Node* const kind_name = entry.find("kind");
     const auto kind = std::find_if(catalogue.signals.begin(), catalogue.signals.end(),
                                    [&](const SignalKind* k) { return kind_name && k->name == kind_name->text(); });
-    if (kind == catalogue.signals.end()) continue;
-    for (const Field& field : (*kind)->fields.fields())
-      if (auto* const name = entry.find(field.name); field.type == FieldType::file && name && !name->text().empty()) visit(entry, *name);
+    if (kind != catalogue.signals.end()) visit_files_of(entry, (*kind)->fields, visit);
   }
 }
 

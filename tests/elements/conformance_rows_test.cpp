@@ -169,9 +169,9 @@ template <class Check> void for_each_friction(const Check& check) {
       check(scene, probe, friction);
     }
   }
-  // Three coulomb_stick, two polygon_contact, a step_lap_joint with sheets, two joint_friction, a buffer, a freewheel, a lossy gear, a skate, two
+  // Three coulomb_stick, two polygon_contact, a step_lap_joint with sheets, two joint_friction, a buffer, a freewheel, a lossy gear, a skate, a bearing, two
   // rolling_resistance.
-  CHECK(count == 14);
+  CHECK(count == 15);
 }
 
 using Wrench = std::array<double, 3>;

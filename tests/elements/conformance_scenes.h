@@ -70,6 +70,9 @@ inline std::vector<ConformanceScene> spring_scenes() {
        false, true},
       {"rotational_spring_damper", "a = \"A\"\nb = \"B\"\nstiffness = 70.0\ndamping = 3.0\nfree_angle = @+0.1\n", false, false},
       {"rotational_spring_damper", "a = \"A\"\nb = \"B\"\nstiffness = 70.0\ndamping = 3.0\ngap = 0.2\nfree_angle = @+0.1\n", false, false},
+      {"maxwell", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\n", false, true},
+      {"maxwell", "a = \"A\"\nb = \"B\"\naxis = [@+0.6, 0.8]\nstiffness = 800.0\ndamping = 30.0\ncount = 2\n"},
+      {"maxwell", "a = \"A\"\nb = \"B\"\nacross = 0.7\nstiffness = 800.0\ndamping = 30.0\n", false, true},
       {"bushing", "a = \"A\"\nb = \"B\"\nstiffness = [500.0, 900.0]\ndamping = [20.0, 30.0]\nrotational_stiffness = 60.0\n"
                   "rotational_damping = 2.0\n"}};
 }
@@ -176,34 +179,35 @@ inline std::vector<ConformanceScene> rope_scenes() {
 
 /// Joints, drives, ropes over points, and loads.
 inline std::vector<ConformanceScene> joint_scenes() {
-  return {{"revolute", "a = \"A\"\nb = \"B\"\n"},
-          {"prismatic", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\n"},
-          {"weld", "a = \"A\"\nb = \"B\"\n"},
-          {"distance", "a = \"A\"\nb = \"B\"\nlength = 0.6\n", false, true},
-          {"point_on_line", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\n"},
-          {"prescribed_motion", "a = \"A\"\nb = \"B\"\ncoordinate = \"y\"\nsignal = \"wave\"\nas = \"velocity\"\n"},
-          {"prescribed_motion", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nsignal = \"wave\"\n", false, true},
-          {"gear", "a = \"A\"\nb = \"B\"\nradius_a = 0.3\nradius_b = 0.5973468189472534\n"},
-          {"rack", "a = \"A\"\nb = \"B\"\nradius = 0.3\naxis = [0.8, @+0.6]\n"}, // the pinion stays on the left
-          {"motor",
-           "a = \"A\"\nb = \"B\"\ncoordinate = \"y\"\neffort = \"wave\"\nno_load_speed = 3.0\ntarget = \"wave\"\nproportional = 50.0\n"
-           "derivative = 4.0\n"},
-          {"motor", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nconstant_effort = 7.0\nno_load_speed = 3.0\n", false, true},
-          {"limit", "a = \"A\"\nb = \"B\"\ncoordinate = \"y\"\nlower = -0.03\nupper = 0.02\nstiffness = 900.0\ndamping = 25.0\n"},
-          {"limit", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nlower = 0.8\nupper = 0.87\nstiffness = 900.0\ndamping = 25.0\n",
-           false, true},
-          {"joint_friction", "a = \"A\"\nb = \"B\"\ncoordinate = \"angle\"\nholds = 3.0\ndrags = 2.0\n"},
-          {"joint_friction", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nholds = 30.0\n", false, true},
-          {"skate", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\n"},
-          {"skate", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\ngrip = 30.0\ndrags = 20.0\n"},
-          {"rope", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\nslack = 0.02\n", false, true},
-          {"rope", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\npretension = 9.0\nacross = 0.7\ncount = 2\n", false, true},
-          {"rope",
-           "a = \"A\"\nb = \"B\"\nover = [\"high on b\", \"low on a\", \"low on a\"]\nstiffness = 800.0\ndamping = 30.0\npretension = 9.0\n"
-           "[[marker]]\nname = \"high on b\"\nbody = \"b\"\npoint = [@+0.2, 0.6]\n"
-           "[[marker]]\nname = \"low on a\"\nbody = \"a\"\npoint = [@-0.3, 0.1]\n"},
-          {"load", "at = \"A\"\nforce = [@+5.0, 3.0]\ncouple = @+0.7\nforce_y = \"wave\"\n", true},
-          {"load", "at = \"A\"\nforce = [@+5.0, 3.0]\ncouple = @-0.7\nforce_y = \"wave\"\nframe = \"body\"\n", true}};
+  return {
+      {"revolute", "a = \"A\"\nb = \"B\"\n"},
+      {"prismatic", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\n"},
+      {"weld", "a = \"A\"\nb = \"B\"\n"},
+      {"distance", "a = \"A\"\nb = \"B\"\nlength = 0.6\n", false, true},
+      {"point_on_line", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\n"},
+      {"prescribed_motion", "a = \"A\"\nb = \"B\"\ncoordinate = \"y\"\nsignal = \"wave\"\nas = \"velocity\"\n"},
+      {"prescribed_motion", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nsignal = \"wave\"\n", false, true},
+      {"gear", "a = \"A\"\nb = \"B\"\nradius_a = 0.3\nradius_b = 0.5973468189472534\n"},
+      {"rack", "a = \"A\"\nb = \"B\"\nradius = 0.3\naxis = [0.8, @+0.6]\n"}, // the pinion stays on the left
+      {"motor", "a = \"A\"\nb = \"B\"\ncoordinate = \"y\"\neffort = \"wave\"\nno_load_speed = 3.0\ntarget = \"wave\"\nproportional = 50.0\n"
+                "derivative = 4.0\n"},
+      {"motor", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nconstant_effort = 7.0\nno_load_speed = 3.0\n", false, true},
+      {"limit", "a = \"A\"\nb = \"B\"\ncoordinate = \"y\"\nlower = -0.03\nupper = 0.02\nstiffness = 900.0\ndamping = 25.0\n"},
+      {"limit", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nlower = 0.8\nupper = 0.87\nstiffness = 900.0\ndamping = 25.0\n", false,
+       true},
+      {"bearing", "a = \"A\"\nb = \"B\"\nstiffness = 900.0\ndamping = 25.0\nradius = 1.0\nstatic_friction = 0.4\nkinetic_friction = 0.3\n"},
+      {"joint_friction", "a = \"A\"\nb = \"B\"\ncoordinate = \"angle\"\nholds = 3.0\ndrags = 2.0\n"},
+      {"joint_friction", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nholds = 30.0\n", false, true},
+      {"skate", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\n"},
+      {"skate", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\ngrip = 30.0\ndrags = 20.0\n"},
+      {"rope", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\nslack = 0.02\n", false, true},
+      {"rope", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\npretension = 9.0\nacross = 0.7\ncount = 2\n", false, true},
+      {"rope",
+       "a = \"A\"\nb = \"B\"\nover = [\"high on b\", \"low on a\", \"low on a\"]\nstiffness = 800.0\ndamping = 30.0\npretension = 9.0\n"
+       "[[marker]]\nname = \"high on b\"\nbody = \"b\"\npoint = [@+0.2, 0.6]\n"
+       "[[marker]]\nname = \"low on a\"\nbody = \"a\"\npoint = [@-0.3, 0.1]\n"},
+      {"load", "at = \"A\"\nforce = [@+5.0, 3.0]\ncouple = @+0.7\nforce_y = \"wave\"\n", true},
+      {"load", "at = \"A\"\nforce = [@+5.0, 3.0]\ncouple = @-0.7\nforce_y = \"wave\"\nframe = \"body\"\n", true}};
 }
 
 /// Bands, belts, cams, one-way clutches, gears with losses, parts of beams.

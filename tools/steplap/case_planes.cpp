@@ -57,7 +57,7 @@ Location first_friction(const Plane& plane) {
   for (const ElementEntry& entry : plane.loaded->model.elements)
     for (const auto& [name, elements] : plane.frictions)
       if (elements.front() == entry.element->name) return entry.element->where;
-  return plane.loaded->model.header.where;
+  return plane.cases.front().where;
 }
 
 void check_planes(const Planes& planes) {
@@ -69,7 +69,7 @@ void check_planes(const Planes& planes) {
   if (pairs.empty())
     problems.push_back({planes[1].cases.front().where,
                         "no [[case]] has the name of one in " + first + ": give the cases that act in both planes one name"});
-  if (shared_frictions(planes).empty())
+  else if (shared_frictions(planes).empty())
     problems.push_back({first_friction(planes[1]), "no friction has the name of one in " + first +
                                                        ": give the friction that carries both planes one name, or one 'shared_friction'"});
   for (const auto& [i, k] : pairs) {

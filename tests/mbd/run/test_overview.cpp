@@ -111,7 +111,7 @@ TEST_CASE("reactions that diverge have no error, and trust says so") {
 TEST_CASE("many elements that do the same are one entry") {
   const Overview overview = overview_of(run_of("machines/pile"));
   CHECK(overview.story.size() <= 8);
-  const StoryEntry* slips = entry_of(overview, "stone 1 on the floor", StorySubject::slips);
+  const StoryEntry* slips = entry_of(overview, "stones.stone 1 on ground", StorySubject::slips);
   REQUIRE(slips != nullptr);
   CHECK(slips->who.size() > 5);
 }

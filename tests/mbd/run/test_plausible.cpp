@@ -152,6 +152,20 @@ TEST_CASE("a radius of gyration far beyond all that is known of a body is found,
                     "inertia_beyond_places"));
 }
 
+TEST_CASE("a pad whose modulus is assumed is noted, one with a document is not, and neither caps a verdict") {
+  const auto pad = [](const std::string& material) {
+    return "[[body]]\nname = \"b\"\nmass = 10.0\ninertia = 1.0\n[[element]]\nkind = \"spring_damper\"\nname = \"pad\"\na = \"b\"\n"
+           "axis = [0.0, 1.0]\narea = 0.01\nthickness = 0.02\nmaterial = \"" +
+           material + "\"\n";
+  };
+  const std::vector<Finding> findings = findings_before(*load_model_text(pad("rubber"), "scene.toml"));
+  const Finding* const note = found(findings, "assumed_pad");
+  REQUIRE(note);
+  CHECK(note->text.starts_with("'pad': the modulus of 'rubber', 4 MPa, is assumed"));
+  CHECK_FALSE(caps_verdict(*note));
+  CHECK_FALSE(found(findings_before(*load_model_text(pad("densified wood"), "scene.toml")), "assumed_pad"));
+}
+
 TEST_CASE("degrees without their unit, limits in another unit and a rest far from the poses are noted, and cap nothing") {
   const Report turned = low_loader({"body.active part.angle=30"});
   const Finding* const turn = found(turned.findings, "more_than_a_turn");

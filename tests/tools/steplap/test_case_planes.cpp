@@ -205,6 +205,8 @@ TEST_CASE("models that are not two planes of one machine are refused, with one e
   const std::string renamed = k_block + k_feet + load_case("Corner", "transverse", pull(0.1));
   std::string apart = k_block + k_feet + load_case("corner", "transverse", pull(0.1));
   apart.replace(apart.find("\"beams\""), 7, "\"rails\"");
+  const std::string no_friction = k_block + load_case("corner", "transverse", pull(0.1));
+  const std::string other = k_block + load_case("other", "transverse", pull(0.1)); // shares neither case nor friction
   const std::string same_plane = k_block + k_feet + load_case("corner", "lengthwise", pull(0.1));
   const std::string no_plane = k_block + k_feet + load_case("corner", "", pull(0.1));
   struct Wrong {
@@ -212,6 +214,8 @@ TEST_CASE("models that are not two planes of one machine are refused, with one e
   };
   for (const Wrong& wrong : {Wrong{renamed, "[[case]]", "no [[case]] has the name of one in"},
                              {apart, "[[element]]\nkind = \"coulomb_stick\"", "no friction has the name of one in"},
+                             {no_friction, "[[case]]", "no friction has the name of one in"},
+                             {other, "[[case]]", "no [[case]] has the name of one in"},
                              {same_plane, "plane = ", "has to be lengthwise in one of the models"},
                              {no_plane, "[[case]]", "has to be lengthwise in one of the models"},
                              {k_block + k_feet, "", "has no load cases"}}) {
