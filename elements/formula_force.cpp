@@ -161,7 +161,7 @@ public:
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     return next_bits(entries[element].formula, mode, slot, e, entries[element].own_now(e));
   }
-  // Includes formulas without switches, because signals may jump.
+  // True for formulas without switches, too, because the signals in them may jump.
   [[nodiscard]] bool has_discontinuous_events() const override { return true; }
   [[nodiscard]] EventTolerance event_tolerance(int) const override { return Jumps ? EventTolerance::none : EventTolerance::velocity; }
   [[nodiscard]] EventKind event_kind(UnitMode, UnitMode) const override { return EventKind::passes_kink; }

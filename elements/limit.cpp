@@ -114,7 +114,7 @@ void add_stops(const Limit& e, SystemBuilder& builder, int a, int b, const Measu
   law.upper = {e.stiffness, e.damping, e.upper ? -stop_at(zero + *e.upper, now, -1.0) : -never};
   auto& group = add(builder, a, b, measure, zero, law, is_angle);
   const auto put = [](StopsLaw& stops, double c) { stops.lower.c = stops.upper.c = c; };
-  damp_after_joints(group, {e.damping, e.stiffness, e.restitution}, a, b, measure, builder, put);
+  set_damping_from_restitution(group, {e.damping, e.stiffness, e.restitution}, a, b, measure, builder, put);
 }
 
 void compile_limit(const Element& element, SystemBuilder& builder) {

@@ -49,7 +49,8 @@ template <class Measure>
 
 /// Calls put(law, c) for the last entry of `group` once the joints are compiled, with the damping c from its restitution.
 template <class Group, class Measure, class Put>
-void damp_after_joints(Group& group, const GivenDamper& given, int a, int b, const Measure& measure, SystemBuilder& builder, Put put) {
+void set_damping_from_restitution(Group& group, const GivenDamper& given, int a, int b, const Measure& measure, SystemBuilder& builder,
+                                  Put put) {
   if (!given.restitution) return;
   builder.after_joints([&group, i = group.entries.size() - 1, given, a, b, measure, &builder, put] {
     put(group.entries[i].law, contact_damping(given, a, b, measure, builder));

@@ -37,7 +37,7 @@ void add_with_law(const RoundContact& e, int a, int b, const Measure& measure, d
   }
   auto& group = add(a, b, measure, KelvinVoigtContact{e.stiffness, e.damping, offset}, builder);
   const auto put = [](KelvinVoigtContact& law, double c) { law.c = c; };
-  damp_after_joints(group, {e.damping, e.stiffness, e.restitution}, a, b, measure, builder, put);
+  set_damping_from_restitution(group, {e.damping, e.stiffness, e.restitution}, a, b, measure, builder, put);
 }
 
 bool check(const RoundContact& e, SystemBuilder& builder) {

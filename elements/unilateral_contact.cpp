@@ -34,7 +34,7 @@ GivenDamper damper_of(const UnilateralContact& e) { return {static_cast<double>(
 // Sets the damping of the contact added last to `group`.
 template <class Group> void damp(Group& group, const UnilateralContact& e, const ContactGeometry& g, SystemBuilder& builder) {
   const auto put = [](KelvinVoigtContact& law, double c) { law.c = c; };
-  damp_after_joints(group, damper_of(e), g.a, g.b, g.gap, builder, put);
+  set_damping_from_restitution(group, damper_of(e), g.a, g.b, g.gap, builder, put);
 }
 
 template <class Law> EndedContactGroup<Law>& add_ended(const ContactGeometry& g, const Vec2& ends, const Law& law, SystemBuilder& builder) {

@@ -16,7 +16,8 @@ namespace {
 constexpr double k_turn = 2.0 * std::numbers::pi;
 constexpr double k_turn_digits = 1e-9;             // tolerance of a whole turn, rad, for angles with few digits in a file
 constexpr double k_rounded_angle = 1e-12 * k_turn; // rounding error of an angle of the curve, rad
-constexpr int k_turns = 20; // turns in either direction that are divided if the lobes of a formula differ from turn to turn
+// Turns in either direction that are searched for lobes if the lift is a formula without a period of one turn.
+constexpr int k_turns = 20;
 
 // Computes h'' at the points from the continuity of h'. In a periodic curve the last point equals the first.
 std::vector<double> curvatures(const std::vector<Vec2>& p, bool is_periodic) {

@@ -18,7 +18,8 @@ namespace {
 constexpr double k_trial = 1.01; // largest u at the end of an accepted step; larger values belong to stages of rejected steps
 // Step of finite differences with respect to the acceleration across the sheets, m/s²; pressures are linear in it.
 constexpr double k_tilt_step = 1e-3;
-constexpr double k_slid_step = 1e-6; // step of finite differences with respect to the overlap, m at a corner 1 m from the centre
+// Step of finite differences with respect to the relative displacement of the sheets, m. Rotations move a corner 1 m from the centre by it.
+constexpr double k_slid_step = 1e-6;
 // Step of finite differences with respect to the direction; the flow is smooth unless an edge passes the centre.
 constexpr double k_turn_step = 1e-4;
 // Step of finite differences of the flow with respect to the overlap: fraction of the distance slid, and its limits, m. Edges that were

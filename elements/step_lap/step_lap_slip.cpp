@@ -136,9 +136,10 @@ void StepLapFriction::slip_events(const Evaluation& e, const FrictionState& stat
   }
 }
 
-// Returns the velocity scale that determines the accuracy of ν. A small change of direction of ν may change the wrench strongly (narrow
-// sheets; centre of rotation near a corner). The measure of this is |ν| tr ∇²h in scaled twists: 1.5 F for translation of a round overlap,
-// F across the slip and F/2 from rotation (∬ w x² dA is half of F gyration²). If it is larger, the scale of ν is reduced in proportion.
+// Returns the velocity scale to which the slip twist ν is integrated. The friction wrench is ∇h(ν), where h is the support function of the limit
+// surface, so a small change of the direction of ν changes it by ∇²h: strongly for narrow sheets, or if the centre of rotation lies near a
+// corner. The measure is |ν| tr ∇²h, with rotations multiplied by the radius of gyration of the pressure: 1.5 F for a translation of a round
+// overlap with capacity F (F across the slip, F/2 by rotation). Where it is larger, the scale is divided by its ratio to 1.5 F.
 SlipScale StepLapFriction::slip_scale(const Evaluation& e, const FrictionState& state, const double* rate) const {
   constexpr double k_round = 1.5;
   SlipScale scale;

@@ -180,7 +180,7 @@ char* put_scientific(char* at, const Digits& d, unsigned last, int count, int ex
 } // namespace
 
 char* write_number(char* at, double value) {
-  constexpr int k_exact = 15; // whole numbers below 2⁵³ have at most this many digits
+  constexpr int k_exact = 15; // whole numbers of at most this many digits are below 2⁵³ and exact
   const auto as_always = [&] { return std::to_chars(at, at + k_number_room, value).ptr; };
   if (!std::isfinite(value)) return as_always();
   if (std::signbit(value)) {

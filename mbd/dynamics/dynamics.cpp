@@ -299,7 +299,8 @@ bool Dynamics::may_evaluate_joint_events_by_code() const {
   return program && program->is_ready() && program->has_joint_wrenches() && !sharing();
 }
 
-// Computes the event functions of merged joints after a stage by code. Returns true if one of them is near its limit.
+// Computes the event functions of sticking joints whose bodies are merged to one, after machine code has evaluated a stage. Returns true if
+// one of them is within k_near_limit of its limit and has to be evaluated exactly.
 bool Dynamics::evaluate_joint_events_by_code(const StageProgram& program, double t) {
   // Joints inside clusters need only their wrench, the time and the friction state.
   evaluation_.t = std::min(t, time_cap_);

@@ -162,7 +162,7 @@ TimeStepping::StepFailure TimeStepping::settle_forces(Dynamics& dynamics, double
   for (int pass = 0; pass < k_max_force_passes && !parts_.empty(); ++pass) {
     if (pass >= k_passes_repeated) couple_bounds(dynamics, t1, tolerance);
     before_ = wrench_;
-    free_rates(dynamics, tolerance);
+    rates_without_friction(dynamics, tolerance);
     if (const StepFailure trouble = balance_friction(dynamics, pass >= k_passes_static); trouble.what) return trouble;
     if (pass >= k_passes_in_full && !is_coupled_)
       for (int r = 0; r < rows_; ++r) wrench_[r] = 0.5 * (before_[r] + wrench_[r]);

@@ -128,7 +128,7 @@ private:
   void load_row(Dynamics& dynamics, const RowSpec& spec, ForceRow& row) const;
   void respond(Dynamics& dynamics, double h);
   void find_driven(FrictionPart& part, double h);
-  void free_rates(Dynamics& dynamics, double tolerance);
+  void rates_without_friction(Dynamics& dynamics, double tolerance);
   [[nodiscard]] StepFailure settle_wrenches(Dynamics& dynamics, double& change);
   [[nodiscard]] double sweep(Dynamics& dynamics, int& worst);
   [[nodiscard]] BlockSolution solve_part(const Evaluation& e, const FrictionPart& part) const;

@@ -170,7 +170,7 @@ void TimeStepping::find_driven(FrictionPart& part, double h) {
 }
 
 // Computes the rates of the rows without friction: the rates at the projected end of the step minus the contribution of the wrenches.
-void TimeStepping::free_rates(Dynamics& dynamics, double tolerance) {
+void TimeStepping::rates_without_friction(Dynamics& dynamics, double tolerance) {
   const Motion<double>* const motion = dynamics.motion().data();
   compliance_.apply(wrench_);
   for (FrictionPart& part : parts_) {

@@ -286,7 +286,7 @@ struct Model {
   std::vector<DefinedChannel> channels;          ///< [[channel]]
   std::vector<Plot> plots;                       ///< [[plot]]
   std::vector<Criterion> criteria;               ///< [[acceptance]]
-  std::vector<TableEntry> tables;                ///< tables such as [[core]], as given; complete() adds the entries that they define
+  std::vector<TableEntry> tables;                ///< tables such as [[core]], as given; complete() makes bodies and elements of them
   Parameters parameters;                         ///< [parameters], and the fields whose values are formulas of parameters
   std::vector<std::string> files_without_format; ///< files of the model without `format = 1`
   std::vector<RenamedKey> renamed_keys;          ///< keys given under earlier names

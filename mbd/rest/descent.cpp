@@ -419,7 +419,7 @@ bool Descent::polish() {
 }
 
 bool Descent::leave_saddle() {
-  const auto unstable = landscape_->most_unstable();
+  const auto unstable = landscape_->most_unstable_direction();
   if (!unstable) return false;
   VecX direction = unstable->direction;
   const MotionPart part = largest_part(direction);

@@ -21,7 +21,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_admissible = 1.0 + 1e-9; // largest utilisation; the excess is rounding at stiff contacts
+constexpr double k_admissible = 1.0 + 1e-9; // largest utilisation of friction at an equilibrium; the excess is rounding at stiff contacts
 constexpr double k_least_used = 1e-9;       // smaller utilisations are rounding
 constexpr double k_flowed = 1e-12;          // fraction of the model's size; smaller slides of elastic joints are rounding
 constexpr int k_most_flows = 200;

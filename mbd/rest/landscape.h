@@ -62,7 +62,7 @@ public:
   /// Returns a downhill step within the trust region that `size` defines.
   [[nodiscard]] virtual VecX trust_step(const StepSize& size) = 0;
   /// Returns the direction of the most negative stiffness; nothing if there is none.
-  [[nodiscard]] virtual std::optional<Unstable> most_unstable() = 0;
+  [[nodiscard]] virtual std::optional<Unstable> most_unstable_direction() = 0;
   /// Returns the number of directions along which small displacements meet no resistance.
   [[nodiscard]] virtual int count_yielding() = 0;
   /// Returns the acceleration of the scaled coordinates.

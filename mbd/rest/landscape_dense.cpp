@@ -86,7 +86,7 @@ public:
     return regularised(used_sigma_);
   }
 
-  std::optional<Unstable> most_unstable() override {
+  std::optional<Unstable> most_unstable_direction() override {
     Eigen::Index worst = 0;
     if (value_.size() == 0 || !(value_.minCoeff(&worst) < -value_rounding_[worst])) return std::nullopt;
     // Sliding friction depends on normal forces, but these do not depend on friction. This adds an off-diagonal stiffness k μ, which makes

@@ -102,7 +102,7 @@ public:
   }
 
   // Brackets the least eigenvalue between −σ for two σ. The direction follows by inverse iteration.
-  std::optional<Unstable> most_unstable() override {
+  std::optional<Unstable> most_unstable_direction() override {
     if (is_definite(loose_)) return std::nullopt;
     double low = loose_, high = 8.0 * loose_;
     for (; !is_definite(high) && std::isfinite(high); high *= 8.0) low = high;

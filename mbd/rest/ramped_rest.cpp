@@ -119,7 +119,8 @@ private:
   const Vec2 gravity_; ///< of the system; restored at the end
   RampedRest now_;
   double s_ = 0.0;
-  double load_ = 1.0; ///< largest load, as a share of the length of the ramp
+  double load_ =
+      1.0; ///< largest distance of the ramp from gravity alone, divided by its own length; a ramp that begins at gravity alone has 1
   int increments_ = 0;
 };
 

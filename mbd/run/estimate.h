@@ -21,7 +21,7 @@ struct Estimate {
   std::string reason;                               ///< reason if there is no estimate
   std::optional<double> cost;                       ///< predicted computing time, s, if the finer runs were not started because of it
   std::optional<GlobalErrorEstimate> errors;        ///< set if status is `known`
-  std::optional<Balance> balance = {};              ///< set if errors are known and the machine is in an unstable equilibrium
+  std::optional<UnstableBody> balance = {};         ///< set if errors are known and the machine is in an unstable equilibrium
   std::string balance_unknown = {};                 ///< reason if stability could not be determined; empty otherwise
 };
 

@@ -395,7 +395,7 @@ std::vector<Finding> findings_at_end(const LoadedModel& loaded, const RunResult&
   return findings;
 }
 
-Finding balance_finding(const LoadedModel& loaded, const Balance& balance) {
+Finding balance_finding(const LoadedModel& loaded, const UnstableBody& balance) {
   const double tenfold = std::numbers::ln10 / balance.rate;
   const double degrees = balance.direction * 180.0 / std::numbers::pi;
   const std::string way = balance.coordinate == 2 ? "turns" : "moves at " + rounded_text(std::round(degrees) + 0.0, 3) + "° to the x axis";

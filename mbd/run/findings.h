@@ -8,7 +8,7 @@
 
 namespace steplap {
 
-struct Balance;
+struct UnstableBody;
 struct Judgement;
 struct RunResult;
 
@@ -22,7 +22,7 @@ struct RunResult;
 /// (open_end.h).
 [[nodiscard]] std::vector<Finding> findings_at_end(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement);
 /// Returns the finding that the machine is in an unstable equilibrium (mbd/trust/balance.h).
-[[nodiscard]] Finding balance_finding(const LoadedModel& loaded, const Balance& balance);
+[[nodiscard]] Finding balance_finding(const LoadedModel& loaded, const UnstableBody& balance);
 /// Returns the finding that stability could not be determined, with the reason.
 [[nodiscard]] Finding balance_unknown_finding(const std::string& why);
 /// Returns findings on the initial state: contacts and stops that contradict the poses, inertias that contradict outlines.

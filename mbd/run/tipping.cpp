@@ -53,7 +53,7 @@ private:
   [[nodiscard]] bool is_carried(const TippingPart& part) const {
     const std::vector<Foot>& feet = scene_.feet();
     return std::any_of(feet.begin(), feet.end(),
-                       [&](const Foot& foot) { return TippingScene::push_on(part, foot).dot(scene_.system().gravity) < 0.0; });
+                       [&](const Foot& foot) { return TippingScene::contact_normal_on(part, foot).dot(scene_.system().gravity) < 0.0; });
   }
   // Returns true if joints to bodies outside the part prevent rotation about every foot.
   [[nodiscard]] bool is_led(const TippingPart& part) const {
@@ -61,7 +61,7 @@ private:
     if (rows.rows() == 0) return false;
     if (PivotedQr(rows, k_rank).rank() > 1) return true;
     return std::none_of(scene_.feet().begin(), scene_.feet().end(), [&](const Foot& pivot) {
-      const Vec2 normal = TippingScene::push_on(part, pivot);
+      const Vec2 normal = TippingScene::contact_normal_on(part, pivot);
       return normal != Vec2::Zero() && motion_about(pivot, normal, rows, 1.0).has_value();
     });
   }
@@ -104,7 +104,7 @@ private:
     if (PivotedQr(rows, k_rank).rank() > 1) return std::nullopt;
     std::optional<Tipping> best;
     for (const Foot& pivot : scene_.feet()) {
-      const Vec2 normal = TippingScene::push_on(part, pivot);
+      const Vec2 normal = TippingScene::contact_normal_on(part, pivot);
       if (normal == Vec2::Zero()) continue;
       for (const double rate : {1.0, -1.0}) {
         const auto twist = motion_about(pivot, normal, rows, rate);
@@ -140,11 +140,11 @@ private:
     const Foot* lifted = nullptr;
     double most = 0.0, size = 0.0;
     for (const Foot& foot : scene_.feet())
-      if (TippingScene::push_on(part, foot) != Vec2::Zero()) size = std::max(size, (foot.point - pivot.point).norm());
+      if (TippingScene::contact_normal_on(part, foot) != Vec2::Zero()) size = std::max(size, (foot.point - pivot.point).norm());
     for (const OneSidedRow* stay : scene_.stays())
       if (lengthening(part, *stay, twist) > TippingScene::k_still * size) return nullptr;
     for (const Foot& foot : scene_.feet()) {
-      const Vec2 normal = TippingScene::push_on(part, foot);
+      const Vec2 normal = TippingScene::contact_normal_on(part, foot);
       if (normal == Vec2::Zero() || &foot == &pivot) continue;
       const double rate = normal.dot(velocity(twist, foot.point));
       if (rate < -TippingScene::k_still * size) return nullptr;

@@ -112,7 +112,7 @@ void TippingScene::add_component(int component, TippingPart& part) const {
 }
 
 // Returns the normal of the force on the part at a foot between the part and a body outside it; zero for other feet.
-Vec2 TippingScene::push_on(const TippingPart& part, const Foot& foot) {
+Vec2 TippingScene::contact_normal_on(const TippingPart& part, const Foot& foot) {
   if (part[foot.a] == part[foot.b]) return Vec2::Zero();
   return part[foot.a] ? foot.normal : Vec2(-foot.normal);
 }
@@ -130,7 +130,7 @@ std::optional<TippingPart> TippingScene::part_on(int component, std::string* why
   for (bool is_changed = true; is_changed;) {
     is_changed = false;
     for (const Foot& foot : feet_) {
-      const Vec2 push = push_on(part, foot);
+      const Vec2 push = contact_normal_on(part, foot);
       if (!(push.dot(system_.gravity) > 0.0)) continue; // a foot that supports the part is permitted
       const int above = part[foot.a] ? foot.b : foot.a;
       if (above == k_ground || !is_rigid(component_[above])) return none("what stands on it has joints that can move");
@@ -140,7 +140,7 @@ std::optional<TippingPart> TippingScene::part_on(int component, std::string* why
   }
   // Repeated until nothing changes, because bodies added to the part may stand on further ones.
   for (const Foot& foot : feet_) {
-    const Vec2 push = push_on(part, foot);
+    const Vec2 push = contact_normal_on(part, foot);
     const int own = part[foot.a] ? foot.a : foot.b;
     if (push != Vec2::Zero() && push.dot(system_.gravity) < 0.0 && component_[own] != component) return std::nullopt;
   }
@@ -162,7 +162,7 @@ std::optional<double> TippingScene::slope_below(const TippingPart& part) const {
   const Vec2 up = -system_.gravity.normalized();
   std::optional<double> slope;
   for (const Foot& foot : feet_) {
-    const Vec2 n = push_on(part, foot);
+    const Vec2 n = contact_normal_on(part, foot);
     if (n == Vec2::Zero()) continue;
     const double own = portable::atan2(up.x() * n.y() - up.y() * n.x(), up.dot(n));
     if (slope && std::abs(own - *slope) > k_one_slope) return std::nullopt;

@@ -54,7 +54,7 @@ public:
   /// either.
   [[nodiscard]] std::optional<TippingPart> part_on(int component, std::string* why = nullptr) const;
   /// Returns the normal of the force on the part at a foot between the part and a body outside it; zero for other feet.
-  [[nodiscard]] static Vec2 push_on(const TippingPart& part, const Foot& foot);
+  [[nodiscard]] static Vec2 contact_normal_on(const TippingPart& part, const Foot& foot);
   /// Returns the gradient of a row's coordinate with respect to the poses of its two bodies.
   [[nodiscard]] Eigen::Matrix<double, 6, 1> gradient(const RowSpec& row) const;
   /// Returns the slope of the plane on which all feet of the part stand, counter-clockwise from the horizontal, rad; nothing if there is no

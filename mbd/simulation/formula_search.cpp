@@ -47,7 +47,7 @@ std::vector<FormulaChannel::Leaf> leaves_of(const FormulaInMotion& in_motion) {
 
 } // namespace
 
-FormulaSearch::FormulaSearch(const System& system, const ActionGroup* group)
+FormulaPeakSearch::FormulaPeakSearch(const System& system, const ActionGroup* group)
     : y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   std::vector<FormulaInMotion> formulas;
   for (const auto& force : system.groups) force->register_formulas(formulas);
@@ -60,7 +60,7 @@ FormulaSearch::FormulaSearch(const System& system, const ActionGroup* group)
   }
 }
 
-void FormulaSearch::add(int action, const FormulaInMotion& in_motion) {
+void FormulaPeakSearch::add(int action, const FormulaInMotion& in_motion) {
   const FormulaTree& tree = in_motion.formula->tree();
   const FormulaProgram& program = in_motion.formula->program();
   const std::size_t count = in_motion.formula->operands().size(), nodes = std::max(values_.size(), tree.size());
@@ -82,7 +82,7 @@ void FormulaSearch::add(int action, const FormulaInMotion& in_motion) {
   node_at_.resize(nodes);
 }
 
-Snapshot FormulaSearch::evaluate_dense(double theta, Integrator& integrator, Dynamics& dynamics) {
+Snapshot FormulaPeakSearch::evaluate_dense(double theta, Integrator& integrator, Dynamics& dynamics) {
   Snapshot snapshot;
   snapshot.t = integrator.t0() + theta * integrator.h();
   integrator.dense(dynamics, theta, y_.data());
@@ -92,7 +92,7 @@ Snapshot FormulaSearch::evaluate_dense(double theta, Integrator& integrator, Dyn
   return snapshot;
 }
 
-double FormulaSearch::place_of_peak(Integrator& integrator, Dynamics& dynamics, const std::vector<char>* is_armed) {
+double FormulaPeakSearch::place_of_peak(Integrator& integrator, Dynamics& dynamics, const std::vector<char>* is_armed) {
   const auto is_asked = [&](const MonitoredFormula& sought) {
     return !sought.is_condition() || (is_armed && (*is_armed)[static_cast<std::size_t>(sought.action)] != 0);
   };
@@ -131,7 +131,7 @@ double FormulaSearch::place_of_peak(Integrator& integrator, Dynamics& dynamics, 
 // step, extended by three times this range on either side. A middle value far outside the range of the ends belongs to the band only if it
 // agrees with the cubic through the ends and the quarter points; otherwise it may be a peak and is excluded. Returns false if a value is
 // not finite.
-bool FormulaSearch::set_band(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics) {
+bool FormulaPeakSearch::set_band(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics) {
   const double t0 = integrator.t0(), h = integrator.h();
   const auto seen = [&](double theta, const std::vector<double>& operands) { return value(sought, operands.data(), t0 + theta * h); };
   const double first = seen(0.0, sought.operands[0]), middle = seen(0.5, sought.operands[1]), last = seen(1.0, sought.operands[2]);
@@ -159,7 +159,7 @@ bool FormulaSearch::set_band(MonitoredFormula& sought, Integrator& integrator, D
   return true;
 }
 
-double FormulaSearch::place_of_peak(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics) {
+double FormulaPeakSearch::place_of_peak(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics) {
   const double t0 = integrator.t0(), h = integrator.h(), t1 = integrator.t1();
   if (sought.is_condition()) {
     sought.high = k_half;
@@ -204,7 +204,7 @@ double FormulaSearch::place_of_peak(MonitoredFormula& sought, Integrator& integr
 }
 
 // Returns true if a comparison that is relevant with these bits may have another outcome than its bit.
-template <class Value> bool FormulaSearch::may_change(const MonitoredFormula& sought, SwitchBits bits, const Value& value_at) {
+template <class Value> bool FormulaPeakSearch::may_change(const MonitoredFormula& sought, SwitchBits bits, const Value& value_at) {
   const SwitchBits counting = sought.program->counting(bits);
   for (std::size_t s = 0; s < sought.comparisons.size(); ++s) {
     const SwitchBits mask = SwitchBits{1} << s;
@@ -218,7 +218,7 @@ template <class Value> bool FormulaSearch::may_change(const MonitoredFormula& so
 
 // Returns the position, as fraction of the step with a relative accuracy of a tenth, where a comparison first differs from the mode; 1 if
 // there is none.
-double FormulaSearch::first_change(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics) {
+double FormulaPeakSearch::first_change(MonitoredFormula& sought, Integrator& integrator, Dynamics& dynamics) {
   const double t0 = integrator.t0(), h = integrator.h();
   const SwitchBits bits = dynamics.evaluation().mode[sought.unit];
   sought.curves.begin(sought.operands[0].data(), sought.operands[2].data(),
@@ -247,7 +247,7 @@ double FormulaSearch::first_change(MonitoredFormula& sought, Integrator& integra
 
 // Test for curves that are not smooth: returns true if the formula may leave its band while each operand stays within the range of its
 // three samples, extended by its width on either side.
-bool FormulaSearch::may_be_outside_by_range(const MonitoredFormula& sought, double t0, double t1) {
+bool FormulaPeakSearch::may_be_outside_by_range(const MonitoredFormula& sought, double t0, double t1) {
   for (std::size_t i = 0; i < sought.curves.count(); ++i) {
     const auto [low, high] = std::minmax({sought.operands[0][i], sought.operands[1][i], sought.operands[2][i]});
     const double width = high - low;
@@ -257,7 +257,7 @@ bool FormulaSearch::may_be_outside_by_range(const MonitoredFormula& sought, doub
       evaluate<EnclosingNumbers<0>>(*sought.tree, leaf_at_.data(), Enclosure<0>::of_range({t0, t1}), node_at_.data()).range);
 }
 
-Interval FormulaSearch::range_over(const MonitoredFormula& sought, const Span& span, double t0, double h) {
+Interval FormulaPeakSearch::range_over(const MonitoredFormula& sought, const Span& span, double t0, double h) {
   for (std::size_t i = 0; i < sought.curves.count(); ++i) leaf_[i] = sought.curves.over(0, i, span.begin, span.end);
   const double begin = t0 + span.begin * h, end = t0 + span.end * h;
   std::array<double, k_degree + 1> c{};
@@ -268,7 +268,7 @@ Interval FormulaSearch::range_over(const MonitoredFormula& sought, const Span& s
       .range;
 }
 
-bool FormulaSearch::may_be_outside_at(const MonitoredFormula& sought, double theta, double t) {
+bool FormulaPeakSearch::may_be_outside_at(const MonitoredFormula& sought, double theta, double t) {
   for (std::size_t i = 0; i < sought.curves.count(); ++i) leaf_at_[i] = sought.curves.at(0, i, theta);
   return sought.may_be_outside(evaluate<EnclosingNumbers<0>>(*sought.tree, leaf_at_.data(),
                                                              Enclosure<0>::of_polynomial({t}, k_rounded_time * std::abs(t)),

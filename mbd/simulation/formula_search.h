@@ -31,10 +31,10 @@
 namespace steplap {
 
 /// Finds positions inside a step where the condition of an armed action becomes true, or a force or rate by formula leaves its band.
-class FormulaSearch {
+class FormulaPeakSearch {
 public:
   /// Searches the formulas of forces and states of `system` and the conditions of `group`, which may be null. Both must outlive the search.
-  FormulaSearch(const System& system, const ActionGroup* group);
+  FormulaPeakSearch(const System& system, const ActionGroup* group);
 
   /// Returns true if no formula needs a search.
   [[nodiscard]] bool is_empty() const { return sought_.empty(); }

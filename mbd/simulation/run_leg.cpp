@@ -77,7 +77,7 @@ void RunLeg::project_and_set_up(const PowerLedger* before, const std::vector<Imp
     if (before) ledger_->go_on_from(*before);
     dynamics_.set_snapshot_integrals(ledger_.get());
   }
-  formula_search_ = std::make_unique<FormulaSearch>(system_, actions_ ? group_ : nullptr);
+  formula_search_ = std::make_unique<FormulaPeakSearch>(system_, actions_ ? group_ : nullptr);
   if (formula_search_->is_empty()) formula_search_.reset();
   integrator_->expect_dense_evaluations(extremes_ || ledger_ || options_.output_step > 0.0);
   if (integrator_->is_adaptive()) set_slip_tolerances(dynamics_.evaluation(), options_.settings.tolerance, system_.frictions.size());
@@ -413,7 +413,7 @@ bool RunLeg::advance() {
   return !is_over() && !is_interrupted_;
 }
 
-// Ends the step early if the condition of an armed action becomes true inside it, or if a formula leaves its band (FormulaSearch). Returns
+// Ends the step early if the condition of an armed action becomes true inside it, or if a formula leaves its band (FormulaPeakSearch). Returns
 // true if the step is withdrawn for this purpose.
 bool RunLeg::ends_at_peak() {
   if (!integrator_->dense_output_is_accurate(dynamics_)) return true;

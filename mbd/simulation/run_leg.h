@@ -119,13 +119,13 @@ private:
   EventFinder finder_;
   SwallowedCheck swallowed_;
   std::unique_ptr<Integrator> integrator_;
-  std::unique_ptr<ExtremeFinder> extremes_;       ///< null if extremes are not requested
-  std::unique_ptr<PowerLedger> ledger_;           ///< null if no channel needs it
-  std::shared_ptr<RunRecord> record_;             ///< shared with the legs before and after
-  ActionTriggers* actions_ = nullptr;             ///< triggers of the run; null if the model has no actions
-  const ActionGroup* group_ = nullptr;            ///< actions of this system; null if the model has none
-  std::unique_ptr<FormulaSearch> formula_search_; ///< null if no formula can peak within a step
-  bool is_interrupted_ = false;                   ///< an action is due
+  std::unique_ptr<ExtremeFinder> extremes_;           ///< null if extremes are not requested
+  std::unique_ptr<PowerLedger> ledger_;               ///< null if no channel needs it
+  std::shared_ptr<RunRecord> record_;                 ///< shared with the legs before and after
+  ActionTriggers* actions_ = nullptr;                 ///< triggers of the run; null if the model has no actions
+  const ActionGroup* group_ = nullptr;                ///< actions of this system; null if the model has none
+  std::unique_ptr<FormulaPeakSearch> formula_search_; ///< null if no formula can peak within a step
+  bool is_interrupted_ = false;                       ///< an action is due
   EventStorm storm_;
   std::unique_ptr<TimeStepping> stepping_; ///< created when the first storm occurs
   std::vector<double> y_, dy_;

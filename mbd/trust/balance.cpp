@@ -444,14 +444,14 @@ private:
 };
 
 // Returns the result for a displacement: the body that it moves most, relative to the body's size, and whether the body moves or rotates.
-Balance balance_by(const System& system, const LegMotion& leg, const VecX& shape, double rate) {
+UnstableBody balance_by(const System& system, const LegMotion& leg, const VecX& shape, double rate) {
   const std::vector<double> ways = ways_of(system, shape), nudges = nudges_of(system, leg.begin);
   std::size_t most = 0;
   for (std::size_t i = 0; i < ways.size(); ++i)
     if (ways[i] * nudges[most] > ways[most] * nudges[i]) most = i;
   const auto first = static_cast<Eigen::Index>(3 * most);
   const double x = shape[first], y = shape[first + 1], turned = shape[first + 2];
-  Balance found{system.bodies[most + 1].name, 0, 0.0, leg.begin.t, rate};
+  UnstableBody found{system.bodies[most + 1].name, 0, 0.0, leg.begin.t, rate};
   if (std::abs(turned) > portable::hypot(x, y)) found.coordinate = 2;
   else found.direction = x < 0.0 || (x == 0.0 && y < 0.0) ? portable::atan2(-y, -x) : portable::atan2(y, x);
   return found;
@@ -505,18 +505,18 @@ struct ExaminedLeg {
     return leg.moved.directions().size() >= leg.moved.weights().size();
   }
   [[nodiscard]] bool is_at_rest(const LegMotion& leg) const { return leg.moved.directions().empty() && own_system(leg).inner_count() == 0; }
-  [[nodiscard]] std::optional<Balance> by_growth(const FrozenLeg& frozen, const GrowthAt& growth_at, const LegMotion& leg,
-                                                 const std::vector<Instant>& looks, double least_exponent) const;
-  [[nodiscard]] std::optional<Balance> by_stiffness(FrozenLeg& frozen, const LegMotion& leg, double least_exponent) const;
-  [[nodiscard]] std::optional<Balance> by_nudge(FrozenLeg* frozen, const LegMotion& leg) const;
-  [[nodiscard]] std::optional<Balance> until_it_fell(const LegMotion& leg) const;
-  [[nodiscard]] std::optional<Balance> of(const LegMotion& leg) const;
+  [[nodiscard]] std::optional<UnstableBody> by_growth(const FrozenLeg& frozen, const GrowthAt& growth_at, const LegMotion& leg,
+                                                      const std::vector<Instant>& looks, double least_exponent) const;
+  [[nodiscard]] std::optional<UnstableBody> by_stiffness(FrozenLeg& frozen, const LegMotion& leg, double least_exponent) const;
+  [[nodiscard]] std::optional<UnstableBody> by_nudge(FrozenLeg* frozen, const LegMotion& leg) const;
+  [[nodiscard]] std::optional<UnstableBody> until_it_fell(const LegMotion& leg) const;
+  [[nodiscard]] std::optional<UnstableBody> of(const LegMotion& leg) const;
 };
 
 // Returns an unstable equilibrium if the growth at the instants `looks` amounts to an exponent above `least_exponent` over the leg, and if
 // runs from displaced poses confirm it. `growth_at` computes the growth rate at a state.
-std::optional<Balance> ExaminedLeg::by_growth(const FrozenLeg& frozen, const GrowthAt& growth_at, const LegMotion& leg,
-                                              const std::vector<Instant>& looks, double least_exponent) const {
+std::optional<UnstableBody> ExaminedLeg::by_growth(const FrozenLeg& frozen, const GrowthAt& growth_at, const LegMotion& leg,
+                                                   const std::vector<Instant>& looks, double least_exponent) const {
   const LegGrowth course = growth_over_leg(growth_at, looks);
   if (!(course.exponent > least_exponent)) return {};
   if (!is_at_rest(leg) && course.growing < std::min(k_least_instants, static_cast<int>(looks.size()))) return {};
@@ -526,7 +526,7 @@ std::optional<Balance> ExaminedLeg::by_growth(const FrozenLeg& frozen, const Gro
   return balance_by(system, leg, course.shape, course.exponent / (leg.end - leg.begin.t));
 }
 
-std::optional<Balance> ExaminedLeg::by_stiffness(FrozenLeg& frozen, const LegMotion& leg, double least_exponent) const {
+std::optional<UnstableBody> ExaminedLeg::by_stiffness(FrozenLeg& frozen, const LegMotion& leg, double least_exponent) const {
   const double least = k_least_share * least_exponent / (leg.end - leg.begin.t);
   const std::vector<Instant> looks =
       is_at_rest(leg) ? instants_at_rest(own_system(leg), leg, instants()) : instants_in_motion(leg, instants());
@@ -539,7 +539,7 @@ std::optional<Balance> ExaminedLeg::by_stiffness(FrozenLeg& frozen, const LegMot
   return by_growth(frozen, growth_at, leg, instants_in_motion(leg, std::min(instants(), k_steady_instants)), least_exponent);
 }
 
-std::optional<Balance> ExaminedLeg::by_nudge(FrozenLeg* frozen, const LegMotion& leg) const {
+std::optional<UnstableBody> ExaminedLeg::by_nudge(FrozenLeg* frozen, const LegMotion& leg) const {
   NudgedLeg nudged(system, initial, options, leg, most_evaluations);
   nudged.choose_nudge(frozen, {});
   const auto gone = nudged.goes_off_otherwise();
@@ -556,7 +556,7 @@ bool grows_at(FrozenLeg& frozen, const State& state, double least) {
 
 // Finds equilibria that ended during the leg because rounding errors grew. For each direction that started to move late, the time before is
 // tested like a leg in which this direction did not move.
-std::optional<Balance> ExaminedLeg::until_it_fell(const LegMotion& leg) const {
+std::optional<UnstableBody> ExaminedLeg::until_it_fell(const LegMotion& leg) const {
   const double duration = leg.end - leg.begin.t;
   double last = -std::numeric_limits<double>::infinity();
   for (const double t : leg.moved.since()) {
@@ -574,7 +574,7 @@ std::optional<Balance> ExaminedLeg::until_it_fell(const LegMotion& leg) const {
   return {};
 }
 
-std::optional<Balance> ExaminedLeg::of(const LegMotion& leg) const {
+std::optional<UnstableBody> ExaminedLeg::of(const LegMotion& leg) const {
   const double duration = leg.end - leg.begin.t;
   if (!(duration > 0.0) || leg.moved.weights().empty()) return {};
   if (!has_dense_algebra()) {
@@ -594,8 +594,8 @@ std::optional<Balance> ExaminedLeg::of(const LegMotion& leg) const {
 
 } // namespace
 
-std::optional<Balance> balance_of(const System& system, const State& initial, const SimulationOptions& options, const RunResult& run,
-                                  double most_evaluations) {
+std::optional<UnstableBody> balance_of(const System& system, const State& initial, const SimulationOptions& options, const RunResult& run,
+                                       double most_evaluations) {
   if (!run.legs) return {};
   const ExaminedLeg asked{system, initial, options, run, most_evaluations};
   for (const LegMotion& leg : *run.legs)

@@ -26,7 +26,7 @@
 namespace steplap {
 
 /// A body in an unstable equilibrium.
-struct Balance {
+struct UnstableBody {
   std::string body;       ///< name of the body that departs fastest
   int coordinate = 0;     ///< 0: it departs along `direction`; 2: it rotates
   double direction = 0.0; ///< angle of its displacement to the x axis, rad, in (−π/2, π/2]
@@ -45,7 +45,7 @@ inline constexpr double k_far_grown_nudge = 1e4;
 /// Returns the first unstable equilibrium of `run`; nothing if there is none. `run` must have been made from `initial` with `options` and
 /// have recorded its motion (SimulationOptions::notes_motion). Throws EvaluationBudgetExceeded if the additional runs need more than
 /// `most_evaluations` evaluations.
-[[nodiscard]] std::optional<Balance> balance_of(const System& system, const State& initial, const SimulationOptions& options,
-                                                const RunResult& run, double most_evaluations);
+[[nodiscard]] std::optional<UnstableBody> balance_of(const System& system, const State& initial, const SimulationOptions& options,
+                                                     const RunResult& run, double most_evaluations);
 
 } // namespace steplap

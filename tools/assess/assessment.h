@@ -22,7 +22,7 @@ struct AssessmentOptions {
   std::vector<std::string> overrides;      ///< "path=value", applied to every model
   std::vector<Evidence> accepted;          ///< kinds of missing evidence that the user accepts
   std::vector<std::string> second_records; ///< files of a second recorder on the same machine; empty: there was one only
-  Shipment shipment;                       ///< shipping data for the report to be signed
+  Shipment shipment;                       ///< serial numbers, journey and recorders, printed on the sheet that is signed
   std::optional<Voyage> voyage;            ///< begin and end of the transport
   double budget = 60.0;                    ///< computing time, s per started day of record, for the search of a lower event threshold
   std::string criteria = "acceptance-3g";  ///< file name or preset

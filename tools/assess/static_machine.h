@@ -56,7 +56,8 @@ struct Probe {
 
   std::optional<Jump> jump; ///< the first one on the path
   bool is_still = true;     ///< nothing has slid since the equilibrium without pull
-  double doubt = 0.0;       ///< difference of its forces from those of a path with other increments, as a share of them
+  double doubt =
+      0.0; ///< largest relative difference of the final forces from those of a path in other increments; infinite if that one comes to no rest
 
   /// Adds the values of the next equilibrium on the path.
   void append_equilibrium(std::vector<double> next);

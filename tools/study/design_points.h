@@ -25,7 +25,7 @@ struct DesignPoints {
   long starts = 0, failed_starts = 0;
   long left_starts = 0; ///< starts that were not used because the sample budget was exhausted
   bool is_origin_failing = false;
-  std::string trouble; ///< reason of the first failed start
+  std::string trouble; ///< why the first starting point of the search failed; empty: none did
   long samples = 0;
 };
 

@@ -13,7 +13,7 @@ namespace steplap::study {
 
 /// One end of an interval in which all limits hold.
 struct HoldingEnd {
-  double value = 0.0; ///< the last value tried that holds, or the best estimate of the border
+  double value = 0.0; ///< without a target probability the last value tried at which all limits hold; with one the estimated border
   /// confidence interval of the border; NaN: none
   double low = std::numeric_limits<double>::quiet_NaN(), high = std::numeric_limits<double>::quiet_NaN();
   bool is_range_end = false; ///< true if the range, or the list of values, ends here

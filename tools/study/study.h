@@ -72,9 +72,10 @@ enum class Measure : std::uint8_t {
 /// [[response]]: a number computed for each run.
 struct Response {
   std::string name;
-  std::string model;                     ///< name of the model that is run; required if there are several
-  std::string channel;                   ///< pattern with * and ?
-  std::string what;                      ///< highest, lowest, largest, final, initial, mean, path, time_of_highest, ...
+  std::string model;   ///< name of the model that is run; required if there are several
+  std::string channel; ///< pattern with * and ?
+  std::string
+      what; ///< statistic of the channel: highest, final, mean, path (sum of all changes), time_of_highest …; all in study_reader.cpp
   Measure measure = Measure::expression; ///< value of `what`
   bool takes_time = false;               ///< true if a response takes the time of an extreme, s, instead of its value
   std::string event, element;            ///< patterns of events that are counted or timed
