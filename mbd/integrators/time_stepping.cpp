@@ -12,8 +12,8 @@ namespace {
 
 constexpr int k_max_mode_passes = 12; // after so many passes, or where contact modes return to earlier ones, the step is halved
 constexpr int k_passes_of_cycle = 2;  // passes made again with earlier modes: both of a contact that neither closed nor open is consistent
-// Share of its displacement in a part by which a contact that is taken as open may be closed at the end. Its damper then acts a share s of
-// the part too late, which is an error of s c h/m ≈ s² of the velocity, since neither mode is consistent only for s < c h/m.
+// Share of its displacement in a part by which a contact that is taken as open may be closed at the end. Its force then begins late by about
+// this share of the part; times of events have errors of a whole step.
 constexpr double k_late = 0.25;
 // Limit of passes for the normal forces at the end of the step; without convergence the step is halved.
 constexpr int k_max_force_passes = 60;

@@ -246,3 +246,15 @@ TEST_CASE("a run that ends before its load has grown does not hold") {
         std::string::npos); // the rear axles, 7 m behind
   CHECK(growing({"signal.road.speed=1 m/s", "simulation.end=45"}).empty());
 }
+
+TEST_CASE("a run keeps running extremes only if a criterion can read them") {
+  const std::string pendulum = std::string(k_pendulum).replace(std::string(k_pendulum).find("stay"), 4, "distance");
+  const std::string criterion = "[[acceptance]]\nname = 'near'\nchannel = 'bob.x'\nwithin = 2.0\nconsequence = 'reject'\n";
+  for (const bool is_limited : {false, true}) {
+    const auto loaded =
+        load_given(parse_given_model(pendulum + (is_limited ? criterion : ""), "pendulum.toml", program_catalogue()), "pendulum");
+    RunOptions options;
+    options.has_extremes = true;
+    CHECK(run_model(loaded, options).result.growth.empty() == !is_limited);
+  }
+}
