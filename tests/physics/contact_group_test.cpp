@@ -13,7 +13,8 @@ namespace {
 const std::string k_boxes = [] {
   const std::string square = "mass = 100; inertia = 4; outline = [[-0.25, -0.2], [0.25, -0.2], [0.25, 0.2], [-0.25, 0.2]]; position = ";
   return body("box 1", square + "[0.0, 0.21]") + body("box 2", square + "[0.1, 0.63]") + body("box 3", square + "[0.3, 1.1]; angle = 0.3") +
-         body("plate", "mass = 1; inertia = 1; position = [9.0, 9.0]") + table_text("marker", "name = \"wall\"\n", "body = 'ground'; at = [-0.3, 0.0]");
+         body("plate", "mass = 1; inertia = 1; position = [9.0, 9.0]") +
+         table_text("marker", "name = \"wall\"\n", "body = 'ground'; at = [-0.3, 0.0]");
 }();
 const std::string k_law = "stiffness = 1e7; dissipation = 2.0; static_friction = 0.4; kinetic_friction = 0.3";
 
