@@ -234,9 +234,8 @@ private:
            text(interval.low) + " to " + text(interval.high) + "). Without it is " + text(prior_.mean()) + ".";
   }
 
-  // Below these effective numbers of samples the intervals of ratios are not reliable: the denominator scatters by a tenth, the numerator by
-  // a fifth.
-  static constexpr double k_fewest = 100.0, k_fewest_failures = 25.0;
+  // Below this effective number of samples the intervals of ratios are not reliable: the denominator scatters by a tenth.
+  static constexpr double k_fewest = 100.0;
   static constexpr std::uint32_t k_stream = 12;
   static constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 

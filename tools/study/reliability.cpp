@@ -83,6 +83,7 @@ public:
     }
     if (has_form) report_form();
     for (const Estimate& e : estimates_) add_findings(e, limit_, run_.study().failed, answer_);
+    report_influence();
     compare_estimates();
     if (limit_.bad() > 0)
       answer_.notes.push_back(std::to_string(limit_.bad()) + " runs did not reach their end or are not to be trusted: they count as \"" +
@@ -229,14 +230,14 @@ private:
                                     std::nan(""), points_.samples});
       }
     }
-    if (const DesignPoint* const nearest = best(); nearest && nearest->beta != 0.0) report_influence(*nearest);
+    if (const DesignPoint* const nearest = best(); nearest && nearest->beta != 0.0) report_slopes(*nearest);
     if (k > 1) answer_.notes.push_back(std::to_string(k) + " design points: the first order probability is of the nearest alone");
   }
 
-  // Reports how another mean or scatter of each variable would change the probability, to first order at the design point. If the limit state
-  // is linear there, β = m/s with s² = Σ s_i², of which variable i contributes the share α_i². Multiplying its scatter by c changes β to
+  // Reports first-order changes at the design point with the mean and the scatter of each variable. If the limit state is linear there,
+  // β = m/s with s² = Σ s_i², of which variable i contributes the share α_i². Multiplying its scatter by c changes β to
   // β/√(1 − (1 − c²) α_i²).
-  void report_influence(const DesignPoint& point) {
+  void report_slopes(const DesignPoint& point) {
     const auto& random = run_.law.random();
     const auto slopes = run_.law.index_slopes(point.u, point.beta);
     const auto put = [&](const std::string& quantity, double value) {
@@ -248,31 +249,43 @@ private:
       put("beta by standard deviation of " + name, slopes[i].by_deviation);
       put("elasticity of the probability by mean of " + name,
           -normal_density(point.beta) / normal_cdf(-point.beta) * slopes[i].by_mean * run_.law.mean(i));
-      put("probability with a mean 10 % larger of " + name,
-          normal_cdf(-(point.beta + slopes[i].by_mean * 0.1 * std::abs(run_.law.mean(i)))));
       if (!run_.law.is_independent()) continue;
       const double share = point.alpha[i] * point.alpha[i];
-      const double halved = normal_cdf(-point.beta / std::sqrt(1.0 - 0.75 * share));
-      put("probability with half the scatter of " + name, halved);
+      put("probability with half the scatter of " + name, halved_scatter(point, i));
       put("omission factor of " + name, 1.0 / std::sqrt(1.0 - std::min(share, 1.0 - 1e-12)));
     }
-    if (run_.law.is_independent()) note_most_important(point, slopes);
-    else
+    if (!run_.law.is_independent())
       answer_.notes.push_back(
           "The variables are correlated: shares of single variables in the scatter are not defined, and importances are "
           "those of the independent variables from which they are made, in their order");
   }
 
-  // Names the variable whose scatter contributes most, and what better knowledge or another mean of it would change.
-  void note_most_important(const DesignPoint& point, const std::vector<JointLaw::IndexSlope>& slopes) {
+  static double halved_scatter(const DesignPoint& point, std::size_t i) {
+    return normal_cdf(-point.beta / std::sqrt(1.0 - 0.75 * point.alpha[i] * point.alpha[i]));
+  }
+
+  // Reports what other distributions would change, of the trusted estimate that is known best.
+  void report_influence() {
+    const Estimate* sampled = nullptr;
+    for (const Estimate& e : estimates_)
+      if (e.is_trusted && e.influence.is_known() && (!sampled || e.cov < sampled->cov)) sampled = &e;
+    const std::size_t notes = answer_.notes.size();
+    if (sampled)
+      sampled->influence.add_findings(
+          limit_, {sampled->method, limit_.subject(), "", run_.study().failed == "safe" ? sampled->safe : sampled->unsafe}, answer_);
+    if (answer_.notes.size() == notes) note_most_important();
+  }
+
+  // Names the variable that matters most where the samples do not tell.
+  void note_most_important() {
+    const DesignPoint* const point = best();
+    if (!(asks("form") || asks("sorm")) || !point || !run_.law.is_independent()) return;
     const auto most =
-        std::max_element(point.alpha.begin(), point.alpha.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-    const auto i = static_cast<std::size_t>(most - point.alpha.begin());
-    const double halved = normal_cdf(-point.beta / std::sqrt(1.0 - 0.75 * *most * *most)),
-                 safer = normal_cdf(-(point.beta + 0.1 * std::abs(slopes[i].by_mean * run_.law.mean(i))));
-    answer_.notes.push_back("'" + run_.study().variables[run_.law.random()[i]].name + "' matters most, to first order: " +
-                            text_of("half its scatter would change the probability from %.3g to %.3g, ", normal_cdf(-point.beta), halved) +
-                            text_of(slopes[i].by_mean > 0.0 ? "a mean 10 %% larger to %.3g." : "a mean 10 %% smaller to %.3g.", safer));
+        std::max_element(point->alpha.begin(), point->alpha.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const auto i = static_cast<std::size_t>(most - point->alpha.begin());
+    answer_.notes.push_back(
+        "'" + run_.study().variables[run_.law.random()[i]].name + "' matters most, to first order: " +
+        text_of("half its scatter would change the probability from %.3g to %.3g.", normal_cdf(-point->beta), halved_scatter(*point, i)));
   }
 
   void add(const char* method, const char* quantity, double value, const std::string& status) {
@@ -349,6 +362,7 @@ StudyKind reliability_kind() {
   kind.draws_jointly = true;
   kind.takes_evidence = true;
   kind.parts = {{"half scatter", "probability with half the scatter of ", UnitOf::none, 4},
+                {"smaller mean", "probability with a mean 10 % smaller of ", UnitOf::none, 4},
                 {"larger mean", "probability with a mean 10 % larger of ", UnitOf::none, 4},
                 {"slope", "beta by mean of ", UnitOf::quotient, 4},
                 {"slope", "beta by standard deviation of ", UnitOf::quotient, 4},

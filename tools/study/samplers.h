@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tools/study/design_points.h"
+#include "tools/study/influence.h"
 
 namespace steplap::study {
 
@@ -17,6 +18,7 @@ struct Estimate {
   std::string status;
   bool is_target_met = false;
   bool is_trusted = true;
+  Influence influence; ///< of the variables; only by methods whose samples have weights
 
   /// Returns the interval for the study's treatment of failed runs. `failed` is "safe", "unsafe", or another word for bounds of both.
   [[nodiscard]] Interval interval(const std::string& failed) const {

@@ -395,6 +395,22 @@ class StudyReportTest(unittest.TestCase):
         shares = [float(r[2].split()[0]) for r in self.rows("#design-points .card:first-child")]
         self.assertAlmostEqual(sum(shares), 100.0, delta=0.2)  # three digits are written
 
+    def test_what_would_change_the_probability_is_ranked_by_scatter(self):
+        self.open("branches")
+        found = {f["quantity"]: f for f in self.export("branches", "--findings") if f["quantity"].startswith("probability with") and f["method"] != "form"}
+        halved = {name: float(found[f"probability with half the scatter of {name}"]["value"]) for name in "ab"}
+        marks = {t["name"]: t for t in self.traces("influence")}
+        self.assertEqual(set(marks), {"half its scatter", "mean 10 % smaller", "mean 10 % larger"})
+        self.assertEqual(marks["half its scatter"]["y"], sorted("ab", key=halved.get))
+        for name, value in zip(marks["half its scatter"]["y"], marks["half its scatter"]["x"]):
+            self.assertEqual(value, halved[name])
+        larger = dict(zip(marks["mean 10 % larger"]["y"], marks["mean 10 % larger"]["x"]))
+        # r = a b + a grows with both, and fails above 4.
+        for name in "ab":
+            self.assertGreater(larger[name], halved[name])
+        self.assertIn("as it is: ", self.text("[data-chart=influence] .annotation-text"))
+        self.assertEqual([r[0] for r in self.rows("#influence")], marks["half its scatter"]["y"])
+
     def test_a_fit_shows_its_record_residuals_and_correlations(self):
         self.open("fit")
         self.assertEqual(self.traces("residuals record")[0]["y"], [0.5, -0.5, 0.5, -0.5])
