@@ -126,8 +126,11 @@ TEST_CASE("two digits of an interval's width are written, none that is not known
 }
 
 TEST_CASE("the quantity of a finding says its part and its unit") {
-  const std::vector<study::ReportColumn> columns{
-      {"pressure", "Pa", "variable"}, {"mu", "", "variable"}, {"slide", "m", "response"}, {"record", "m", "history"}};
+  const std::vector<study::ReportColumn> columns{{"pressure", "Pa", "variable"},
+                                                 {"mu", "", "variable"},
+                                                 {"slide", "m", "response"},
+                                                 {"margin", "", "response"},
+                                                 {"record", "m", "history"}};
   const auto view = [&](const study::Finding& f) { return study::view_of(f, columns); };
   const study::FindingView mean = view({"monte_carlo", "slide", "mean", 0.0123456, 0.0121, 0.0125});
   CHECK(mean.value == "12.35");
@@ -234,6 +237,17 @@ TEST_CASE("the page of a study: all of it from the store, the same bytes, markup
     CHECK(data["samples"]["classes"][2]["shown"] == data["samples"]["classes"][2]["all"]); // rare ones are kept
     CHECK(data["distributions"]["of"][0]["total"] == 400);                                 // of all, however many are shown
   }
+}
+
+TEST_CASE("the table of variables has the unit and the meaning of each column of the samples") {
+  StudyBench bench;
+  (void)bench.run(k_sample);
+  const std::string table = study_does({"export", bench.at("study.sqlite"), "--variables"}).out;
+  CHECK(table.starts_with("name,role,unit,is\nforce,variable,N,\"normal, mean 30000 N, standard deviation 5000 N\"\n"));
+  std::string names;
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) names += "," + line.substr(0, line.find(','));
+  CHECK(has(bench.samples(), "evaluations" + names.substr(std::string(",name").size()) + "\n"));
 }
 
 TEST_CASE("of more samples than fit rare kinds are kept, all evenly") {
