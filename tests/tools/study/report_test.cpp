@@ -144,6 +144,8 @@ TEST_CASE("the quantity of a finding says its part and its unit") {
   CHECK(view({"form", "design point 2", "pressure", 66506.0}).unit == "kPa");
   CHECK(view({"form", "design point 2", "pressure", 66506.0}).place == 2);
   CHECK(view({"map", "border 3 point 17", "pressure", 66506.0}).place == 3);
+  CHECK(view({"design", "value 1", "pressure", 66506.0}).role == "value");
+  CHECK(view({"design", "value 1", "margin", 0.1}).role == "margin"); // which is a response here, too, but no coordinate
   CHECK(view({"fit", "pressure", "value", 29985.0, 29000.0, 31000.0}).value == "30.0");
   CHECK(view({"fit", "pressure, mu", "correlation", 0.91234}).value == "0.912");
   CHECK(view({"fit", "record", "residual, root mean square", 0.00123456}).value == "1.235"); // mm

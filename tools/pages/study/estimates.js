@@ -437,9 +437,16 @@ study.estimates = (() => {
       }
     });
   }
+  // A study of several samplings of one method keeps all of them: the number of samples begins anew with each.
+  function lastSampling(g) {
+    const begin = g.samples.findLastIndex((n, i) => i > 0 && n < g.samples[i - 1]);
+    if (begin < 0) return g;
+    const part = (list) => list.slice(begin);
+    return {...g, samples: part(g.samples), value: part(g.value), low: part(g.low), high: part(g.high) };
+  }
   function convergence() {
     const groups = new Map();
-    for (const g of data.growth) {
+    for (const g of data.growth.map(lastSampling)) {
       const key = `${g.subject}: ${g.quantity}`;
       groups.set(key, [...(groups.get(key) || []), {...g, name: g.method, unit: '', isShare: true }]);
     }
@@ -461,9 +468,10 @@ study.estimates = (() => {
     const entries = [...groups].filter(([, series]) => series.some((s) => s.samples.length));
     if (!entries.length) return;
     const section = open('convergence'),
-          thinned = data.growth.filter((g) => g.samples.length < g.all).map((g) => `${g.samples.length} of ${g.all} of ${g.method}`);
+          thinned = data.growth.filter((g) => g.samples.length < g.all).map((g) => `${g.samples.length} of ${g.all} of ${g.method}`),
+          isSeveral = data.growth.some((g) => lastSampling(g) !== g);
     section.append(make('p', { class: 'note' },
-      `The estimate as samples came in, and its interval.${
+      `The estimate as samples came in, and its interval.${isSeveral ? ' Of several samplings the last is drawn.' : ''}${
         thinned.length ? ` Drawn: ${thinned.join(', ')}.` : ''}`));
     several(section, entries, (box, [title, series]) => settled(box, title, series));
   }
