@@ -60,6 +60,10 @@ void add_findings(const Estimate& e, const LimitFunction& limit, const std::stri
   if (!is_both) add("probability", failed == "unsafe" ? e.unsafe : e.safe, failed == "unsafe" ? e.unsafe_interval : e.safe_interval);
   if (is_both) add("probability, runs without result as safe", e.safe, e.safe_interval);
   if (is_both) add("probability, runs without result as unsafe", e.unsafe, e.unsafe_interval);
+  for (Finding f : e.more) {
+    f.samples = e.samples;
+    answer.findings.push_back(std::move(f));
+  }
   if (!e.is_trusted) answer.degrade(Standing::not_trusted);
   else if (!e.is_target_met) answer.degrade(Standing::not_met);
 }

@@ -1,4 +1,5 @@
-// Estimates probabilities by sampling: Monte Carlo, importance sampling at design points, directional simulation and subset simulation.
+// Estimates probabilities by sampling: Monte Carlo, importance sampling at design points, directional simulation, subset simulation and
+// kriging.
 // Each returns a confidence interval and a status.
 #pragma once
 
@@ -18,7 +19,8 @@ struct Estimate {
   std::string status;
   bool is_target_met = false;
   bool is_trusted = true;
-  Influence influence; ///< of the variables; only by methods whose samples have weights
+  Influence influence;       ///< of the variables; only by methods whose samples have weights
+  std::vector<Finding> more; ///< findings of this method alone
 
   /// Returns the interval for the study's treatment of failed runs. `failed` is "safe", "unsafe", or another word for bounds of both.
   [[nodiscard]] Interval interval(const std::string& failed) const {
@@ -53,6 +55,10 @@ struct SamplingTarget {
 /// Uses nested levels, each a given fraction of the previous one, and repeats the whole `repetitions` times; the scatter gives the
 /// interval. If values are equal, so that no further level exists, failures are counted directly.
 [[nodiscard]] Estimate subset_simulation(LimitFunction& limit, const SamplingTarget& target);
+
+/// Active learning: a surrogate by kriging says which samples of a Monte Carlo population fail, and asks for runs where it is in doubt. For
+/// runs that are dear: at most 500 are made. Its interval contains the doubt and the scatter of the population.
+[[nodiscard]] Estimate kriging(LimitFunction& limit, const SamplingTarget& target);
 
 /// Adds the findings of an estimate to the answer.
 void add_findings(const Estimate& estimate, const LimitFunction& limit, const std::string& failed, Answer& answer);
