@@ -16,7 +16,7 @@ namespace {
 constexpr double k_turn = 2.0 * std::numbers::pi;
 constexpr double k_turn_digits = 1e-9;             // tolerance of a whole turn, rad, for angles with few digits in a file
 constexpr double k_rounded_angle = 1e-12 * k_turn; // rounding error of an angle of the curve, rad
-// Turns in either direction that are searched for lobes if the lift is a formula without a period of one turn.
+// AngleUnit in either direction that are searched for lobes if the lift is a formula without a period of one turn.
 constexpr int k_turns = 20;
 
 // Computes h'' at the points from the continuity of h'. In a periodic curve the last point equals the first.

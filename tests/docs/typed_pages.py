@@ -11,10 +11,12 @@ Of a page these blocks count:
   ```csv    the same, with "# NAME.csv".
   ```diff   lines of the file written last that are replaced for the next ```sh block only.
   ```sh     commands. Each ends with exit code 0, unless what is shown holds an error; what is left out is told with its reason.
-  ```text   directly after ```sh: what these commands say, on both streams. A line "…" stands for any lines, "…" within a line
+  ```python a script, run by the Python of this test.
+  ```text   directly after ```sh or ```python: what these commands say, on both streams. A line "…" stands for any lines, "…" within a line
             for any text, as times of computing differ. Spaces at the ends of lines do not count.
 Pages that are named together are typed one after the other in the same folder.
 """
+import importlib.util
 import os
 import pathlib
 import re
@@ -40,6 +42,7 @@ LEFT_OUT = {
     "steplap explore ": "it serves a page until somebody ends it; tests/tools/pages/explore_test.py does",
 }
 NEEDS = {"steplap plot": "gnuplot"}
+PYTHON = f"{sys.executable} - <<'END'\n"
 
 
 def blocks(text):
@@ -104,6 +107,8 @@ class Typist:
         for begin, program in NEEDS.items():
             if command.startswith(begin) and not shutil.which(program):
                 return f"there is no {program} here"
+        if command.startswith(PYTHON) and not importlib.util.find_spec("pandas"):
+            return "there is no pandas here"
         if command.startswith("steplap study") and not self.has_studies:
             return "the program for studies is not built"
         return None
@@ -112,9 +117,9 @@ class Typist:
         script = (self.root / "tools/run").read_text()
         return script[script.rindex("\nexec ") + 6:].replace('"$@"', "").strip()
 
-    def type_block(self, text, shown, place):
+    def type_block(self, language, text, shown, place):
         said, is_complete, codes = "", True, []
-        for command in commands(text):
+        for command in commands(text) if language == "sh" else [f"{PYTHON}{text}END"]:
             reason = self.reason_to_leave(command)
             if command.startswith("tools/run"):
                 command = self.last_command_of_run()
@@ -152,10 +157,10 @@ class Typist:
             elif language == "diff":
                 undone = self.written.read_text()
                 self.written.write_text(replaced(undone, text))
-            elif language == "sh":
+            elif language in ("sh", "python"):
                 following = found[i + 1] if i + 1 < len(found) else ("", "", 0)
                 is_shown = following[0] == "text" and following[2] == line + text.count("\n") + 3
-                self.type_block(text, following[1] if is_shown else None, place)
+                self.type_block(language, text, following[1] if is_shown else None, place)
                 if undone is not None:
                     self.written.write_text(undone)
                     undone = None

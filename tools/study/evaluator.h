@@ -51,6 +51,9 @@ public:
   /// Returns the time since the study was started or continued, s.
   [[nodiscard]] double seconds() const;
 
+  /// Returns how many samples are run per second, by the latest batch; zero if all came from the store.
+  [[nodiscard]] double rate() const { return pace_.rate; }
+
   /// Called on ranks other than 0: runs the samples that rank 0 requests until dismiss().
   static void serve(const LoadedStudy& loaded, const Ranks& ranks, int threads);
   /// Called on rank 0: ends serve() on the other ranks.

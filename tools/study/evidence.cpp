@@ -236,9 +236,8 @@ private:
            text(interval.low) + " to " + text(interval.high) + "). Without it is " + text(prior_.mean()) + ".";
   }
 
-  // Smallest effective numbers of samples in agreement with the evidence and of failures among them. With fewer, a ratio's denominator
-  // scatters by more than 10 % or its numerator by more than 20 %, and its interval is not reliable.
-  static constexpr double k_fewest = 100.0, k_fewest_failures = 25.0;
+  // Below this effective number of samples the intervals of ratios are not reliable: the denominator scatters by a tenth.
+  static constexpr double k_fewest = 100.0;
   static constexpr std::uint32_t k_stream = 12;
   static constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 

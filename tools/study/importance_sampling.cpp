@@ -59,6 +59,7 @@ private:
   void begin() {
     proposal_ = Proposal(design_.points, outposts_, limit_.dimension());
     sums_ = {};
+    e_.influence = Influence(limit_.run().law);
     nearest_stray_ = std::numeric_limits<double>::infinity();
     stray_.clear();
     heaviest_ = 0.0;
@@ -77,6 +78,7 @@ private:
       for (std::size_t i = 0; i < block; ++i) {
         const double w = proposal_.weight(&points_[i * n]);
         sums_.add(values[i], w);
+        e_.influence.add(&points_[i * n], w, values[i]);
         e_.bad += values[i].is_bad;
         if (!values[i].is_bad && values[i].g < 0.0) remember(&points_[i * n], n, w);
       }

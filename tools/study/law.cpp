@@ -34,6 +34,14 @@ struct JointLaw::Marginal {
     // Both tails with full precision.
     return z < 0.0 ? distribution.computeQuantile(normal_cdf(z), false)[0] : distribution.computeQuantile(normal_cdf(-z), true)[0];
   }
+  /// Inverse of at(); infinite where the distribution takes no values.
+  [[nodiscard]] double normal_at(double x) const {
+    const double below = distribution.computeCDF(x);
+    return below < 0.5 ? quantile_or_end(below) : -quantile_or_end(distribution.computeComplementaryCDF(x));
+  }
+
+private:
+  static double quantile_or_end(double p) { return p > 0.0 ? normal_quantile(p) : -std::numeric_limits<double>::infinity(); }
 };
 
 namespace {
@@ -259,6 +267,49 @@ std::vector<double> JointLaw::correlated(const double* u) const {
     for (std::size_t j = 0; j <= i; ++j) z[i] += root_[i * (i + 1) / 2 + j] * u[j];
   }
   return z;
+}
+
+// u = L⁻¹ z.
+std::vector<double> JointLaw::uncorrelated(const std::vector<double>& z) const {
+  std::vector<double> u = z;
+  for (std::size_t i = 0; i < z.size() && !root_.empty(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) u[i] -= root_[i * (i + 1) / 2 + j] * u[j];
+    u[i] /= root_[i * (i + 1) / 2 + i];
+  }
+  return u;
+}
+
+// The value from which the change made x.
+double JointLaw::unchanged(std::size_t place, double x, const Change& change) const {
+  return mean(place) + (x - mean(place) - change.shift) / change.stretch;
+}
+
+// The changed value x has the density f(t)/c with the unchanged value t and the stretch c. The normal variables have the density φ(u) with
+// u = L⁻¹ z, that of variable i alone φ(z_i); both change from z_i(x) to z_i(t).
+double JointLaw::density_ratio(const double* u, std::size_t place, const Change& change) const {
+  std::vector<double> z = correlated(u);
+  const OT::Distribution& distribution = marginals_[place].distribution;
+  const double x = marginals_[place].at(z[place]), t = unchanged(place, x, change);
+  const double ratio = distribution.computePDF(t) / (change.stretch * distribution.computePDF(x));
+  if (is_independent() || ratio == 0.0) return ratio;
+  const auto dependence = [&] {
+    const std::vector<double> v = uncorrelated(z);
+    double exponent = 0.5 * z[place] * z[place];
+    for (const double one : v) exponent -= 0.5 * one * one;
+    return exponent;
+  };
+  const double before = dependence();
+  z[place] = marginals_[place].normal_at(t);
+  return std::isfinite(z[place]) ? ratio * std::exp(dependence() - before) : 0.0;
+}
+
+double JointLaw::unreachable_share(std::size_t place, const Change& change) const {
+  const OT::Distribution& distribution = marginals_[place].distribution;
+  const OT::Interval range = distribution.getRange();
+  double share = 0.0;
+  if (range.getFiniteLowerBound()[0]) share += distribution.computeCDF(unchanged(place, range.getLowerBound()[0], change));
+  if (range.getFiniteUpperBound()[0]) share += distribution.computeComplementaryCDF(unchanged(place, range.getUpperBound()[0], change));
+  return share;
 }
 
 void JointLaw::values_at(const double* u, double* values) const {

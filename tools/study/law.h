@@ -39,6 +39,15 @@ public:
   /// importance measures in structural reliability, Civil Engineering Systems 3, 1986). Shifting and stretching preserve the shape of the
   /// distribution; a normal distribution stays normal.
   [[nodiscard]] std::vector<IndexSlope> index_slopes(const std::vector<double>& u, double beta) const;
+  /// Another distribution of one random variable, of the same shape, whatever its kind. The correlations of the normal variables stay.
+  struct Change {
+    double shift = 0.0;   ///< of the mean
+    double stretch = 1.0; ///< factor of the standard deviation
+  };
+  /// Returns the ratio of the changed joint density to the present one at the point u, for the random variable at this position in random().
+  [[nodiscard]] double density_ratio(const double* u, std::size_t place, const Change& change) const;
+  /// Returns the probability of changed values that the present distribution does not take.
+  [[nodiscard]] double unreachable_share(std::size_t place, const Change& change) const;
   /// Returns the mean of a random variable; standard_deviation() returns its standard deviation. `place`: index in random().
   [[nodiscard]] double mean(std::size_t place) const;
   [[nodiscard]] double standard_deviation(std::size_t place) const;
@@ -55,6 +64,8 @@ public:
 private:
   struct Marginal;
   [[nodiscard]] std::vector<double> correlated(const double* u) const;
+  [[nodiscard]] std::vector<double> uncorrelated(const std::vector<double>& z) const;
+  [[nodiscard]] double unchanged(std::size_t place, double x, const Change& change) const;
   void correlate(const Study& study, std::vector<Diagnostic>& problems);
   std::vector<Marginal> marginals_;
   std::vector<std::size_t> random_;

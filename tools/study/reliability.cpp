@@ -16,7 +16,7 @@ FieldTable reliability_fields() {
   using S = ReliabilitySettings;
   FieldTable t;
   t.add("methods", &S::methods)
-      .doc("monte_carlo, form, sorm, importance_sampling, directional, subset; the first that samples gives the answer");
+      .doc("monte_carlo, form, sorm, importance_sampling, directional, subset, kriging; the first that samples gives the answer");
   t.add("limit_states", &S::limit_states).doc("those that make the system; all if none is named");
   t.add("combination", &S::combination).one_of({"any", "all"}).doc("the system fails where any of them does, or where all do");
   t.add("cov", &S::cov).positive().at_most(1).doc("sampling stops at this coefficient of variation of the probability");
@@ -37,7 +37,7 @@ FieldTable reliability_fields() {
   return t;
 }
 
-const std::vector<std::string> k_methods{"monte_carlo", "form", "sorm", "importance_sampling", "directional", "subset"};
+const std::vector<std::string> k_methods{"monte_carlo", "form", "sorm", "importance_sampling", "directional", "subset", "kriging"};
 
 constexpr double k_alarm = 0.01; // probability of a false alarm over all comparisons of a study
 
@@ -74,6 +74,7 @@ public:
       if (method == "directional") estimates_.push_back(directional(limit_, target_));
       if (method == "subset") estimates_.push_back(subset_simulation(limit_, target_));
       if (method == "importance_sampling") sample_around(target_);
+      if (method == "kriging") learn();
     }
     if (has_form && estimates_.empty()) { // a first-order result is always checked by sampling
       SamplingTarget check = target_;
@@ -83,6 +84,7 @@ public:
     }
     if (has_form) report_form();
     for (const Estimate& e : estimates_) add_findings(e, limit_, run_.study().failed, answer_);
+    report_influence();
     compare_estimates();
     if (limit_.bad() > 0)
       answer_.notes.push_back(std::to_string(limit_.bad()) + " runs did not reach their end or are not to be trusted: they count as \"" +
@@ -102,6 +104,21 @@ private:
   }
   [[nodiscard]] const DesignPoint* best() const {
     return points_.points.empty() || !points_.points.front().is_found ? nullptr : &points_.points.front();
+  }
+
+  // Says so if sampling without a surrogate would have been faster for the same coefficient of variation.
+  void learn() {
+    const double begin = run_.evaluator.seconds();
+    const Estimate& e = estimates_.emplace_back(kriging(limit_, target_));
+    const double took = run_.evaluator.seconds() - begin, rate = run_.evaluator.rate();
+    if (rate == 0.0 || !std::isfinite(e.cov)) return;
+    constexpr double k_around = 14.0; // runs times cov²: importance sampling needs at most 1400 at 0.1 for smooth limit states
+    const double rarer = std::min(e.safe, 1.0 - e.safe), crude = (1.0 - rarer) / rarer;
+    const double seconds = std::min(crude, k_around) / (e.cov * e.cov) / rate;
+    if (seconds < took)
+      answer_.notes.push_back(std::string("Runs cost little here: \"") + (crude < k_around ? "monte_carlo" : "importance_sampling") +
+                              "\" is the better method. " +
+                              text_of("It would be as accurate after about %.2g s; kriging took %.2g s.", seconds, took));
   }
 
   void sample_around(const SamplingTarget& target) {
@@ -230,14 +247,14 @@ private:
                                     std::nan(""), points_.samples});
       }
     }
-    if (const DesignPoint* const nearest = best(); nearest && nearest->beta != 0.0) report_influence(*nearest);
+    if (const DesignPoint* const nearest = best(); nearest && nearest->beta != 0.0) report_slopes(*nearest);
     if (k > 1) answer_.notes.push_back(std::to_string(k) + " design points: the first order probability is of the nearest alone");
   }
 
-  // Reports how another mean or scatter of each variable would change the probability, to first order at the design point. For a linear
-  // limit state β = m/s, where s² = Σ s_i² and variable i contributes the fraction α_i². If its scatter is multiplied by c, β becomes β/√(1
-  // − (1 − c²) α_i²).
-  void report_influence(const DesignPoint& point) {
+  // Reports first-order changes at the design point with the mean and the scatter of each variable. If the limit state is linear there,
+  // β = m/s with s² = Σ s_i², of which variable i contributes the share α_i². Multiplying its scatter by c changes β to
+  // β/√(1 − (1 − c²) α_i²).
+  void report_slopes(const DesignPoint& point) {
     const auto& random = run_.law.random();
     const auto slopes = run_.law.index_slopes(point.u, point.beta);
     const auto put = [&](const std::string& quantity, double value) {
@@ -249,31 +266,43 @@ private:
       put("beta by standard deviation of " + name, slopes[i].by_deviation);
       put("elasticity of the probability by mean of " + name,
           -normal_density(point.beta) / normal_cdf(-point.beta) * slopes[i].by_mean * run_.law.mean(i));
-      put("probability with a mean 10 % larger of " + name,
-          normal_cdf(-(point.beta + slopes[i].by_mean * 0.1 * std::abs(run_.law.mean(i)))));
       if (!run_.law.is_independent()) continue;
       const double share = point.alpha[i] * point.alpha[i];
-      const double halved = normal_cdf(-point.beta / std::sqrt(1.0 - 0.75 * share));
-      put("probability with half the scatter of " + name, halved);
+      put("probability with half the scatter of " + name, halved_scatter(point, i));
       put("omission factor of " + name, 1.0 / std::sqrt(1.0 - std::min(share, 1.0 - 1e-12)));
     }
-    if (run_.law.is_independent()) note_most_important(point, slopes);
-    else
+    if (!run_.law.is_independent())
       answer_.notes.push_back(
           "The variables are correlated: shares of single variables in the scatter are not defined, and importances are "
           "those of the independent variables from which they are made, in their order");
   }
 
-  // Notes the variable whose scatter contributes most, and the effect of a smaller scatter or another mean.
-  void note_most_important(const DesignPoint& point, const std::vector<JointLaw::IndexSlope>& slopes) {
+  static double halved_scatter(const DesignPoint& point, std::size_t i) {
+    return normal_cdf(-point.beta / std::sqrt(1.0 - 0.75 * point.alpha[i] * point.alpha[i]));
+  }
+
+  // Reports what other distributions would change, of the trusted estimate that is known best.
+  void report_influence() {
+    const Estimate* sampled = nullptr;
+    for (const Estimate& e : estimates_)
+      if (e.is_trusted && e.influence.is_known() && (!sampled || e.cov < sampled->cov)) sampled = &e;
+    const std::size_t notes = answer_.notes.size();
+    if (sampled)
+      sampled->influence.add_findings(
+          limit_, {sampled->method, limit_.subject(), "", run_.study().failed == "safe" ? sampled->safe : sampled->unsafe}, answer_);
+    if (answer_.notes.size() == notes) note_most_important();
+  }
+
+  // Names the variable that matters most where the samples do not tell.
+  void note_most_important() {
+    const DesignPoint* const point = best();
+    if (!(asks("form") || asks("sorm")) || !point || !run_.law.is_independent()) return;
     const auto most =
-        std::max_element(point.alpha.begin(), point.alpha.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-    const auto i = static_cast<std::size_t>(most - point.alpha.begin());
-    const double halved = normal_cdf(-point.beta / std::sqrt(1.0 - 0.75 * *most * *most)),
-                 safer = normal_cdf(-(point.beta + 0.1 * std::abs(slopes[i].by_mean * run_.law.mean(i))));
-    answer_.notes.push_back("'" + run_.study().variables[run_.law.random()[i]].name + "' matters most, to first order: " +
-                            text_of("half its scatter would change the probability from %.3g to %.3g, ", normal_cdf(-point.beta), halved) +
-                            text_of(slopes[i].by_mean > 0.0 ? "a mean 10 %% larger to %.3g." : "a mean 10 %% smaller to %.3g.", safer));
+        std::max_element(point->alpha.begin(), point->alpha.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const auto i = static_cast<std::size_t>(most - point->alpha.begin());
+    answer_.notes.push_back(
+        "'" + run_.study().variables[run_.law.random()[i]].name + "' matters most, to first order: " +
+        text_of("half its scatter would change the probability from %.3g to %.3g.", normal_cdf(-point->beta), halved_scatter(*point, i)));
   }
 
   void add(const char* method, const char* quantity, double value, const std::string& status) {
@@ -350,6 +379,7 @@ StudyKind reliability_kind() {
   kind.draws_jointly = true;
   kind.takes_evidence = true;
   kind.parts = {{"half scatter", "probability with half the scatter of ", UnitOf::none, 4},
+                {"smaller mean", "probability with a mean 10 % smaller of ", UnitOf::none, 4},
                 {"larger mean", "probability with a mean 10 % larger of ", UnitOf::none, 4},
                 {"slope", "beta by mean of ", UnitOf::quotient, 4},
                 {"slope", "beta by standard deviation of ", UnitOf::quotient, 4},
@@ -357,6 +387,8 @@ StudyKind reliability_kind() {
                 {"elasticity of P", "elasticity of the probability by mean of ", UnitOf::none, 4},
                 {"signed importance", "signed importance of "},
                 {"probability", "probability", UnitOf::none, 4},
+                {"doubt", "with doubtful samples ", UnitOf::none, 4},
+                {"population", "population", UnitOf::none, 7},
                 {"prior", "without evidence", UnitOf::none, 4},
                 {"evidence", "chance of the evidence", UnitOf::none, 4},
                 {"evidence", "effective samples", UnitOf::none, 4},

@@ -1,6 +1,7 @@
 #include "tools/study/report_about.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/io/csv.h"
 #include "tools/study/kinds.h"
 
 #include <nlohmann/json.hpp>
@@ -117,6 +118,18 @@ std::string about_of(const LoadedStudy& loaded, const JointLaw& law) {
   json["variants"] = Json::array();
   for (const ModelVariant& v : loaded.variants) json["variants"].push_back(v.name);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string variables_csv(const std::string& about) {
+  const Json json = Json::parse(about);
+  std::string text = "name,role,unit,is\n";
+  const auto add = [&](const Json& entry, const std::string& role, const char* is) {
+    const auto field = [&](const char* key) { return csv_field(entry.value(key, "")); };
+    text += field("name") + "," + csv_field(role) + "," + field("unit") + "," + field(is) + "\n";
+  };
+  for (const Json& variable : json["variables"]) add(variable, "variable", "varies");
+  for (const Json& number : json["numbers"]) add(number, number.value("role", ""), "is");
+  return text;
 }
 
 } // namespace steplap::study

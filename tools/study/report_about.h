@@ -12,4 +12,8 @@ namespace steplap::study {
 /// Returns the description as JSON. It depends on the study file only.
 [[nodiscard]] std::string about_of(const LoadedStudy& loaded, const JointLaw& law);
 
+/// Returns CSV made from it: a row for each variable, response and limit state, with its unit in the samples, "" if it has none, and its
+/// distribution or formula.
+[[nodiscard]] std::string variables_csv(const std::string& about);
+
 } // namespace steplap::study

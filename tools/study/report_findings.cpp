@@ -41,13 +41,14 @@ bool is_of(const Finding& f, const FindingPart& part) {
 
 // Finds the presentation of a finding and its SI unit. Searches all study kinds, because a quantity has the same meaning in each.
 void find_part(const Finding& f, const std::vector<ReportColumn>& columns, FindingView& view, int& digits) {
-  const ReportColumn* coordinate = find_column(columns, f.quantity);
+  const ReportColumn* column = find_column(columns, f.quantity);
+  const bool is_coordinate = column && column->role == "variable"; // a response may have the name of a quantity
   for (const StudyKind& kind : study_kinds())
     for (const PointRole& point : kind.points) {
-      if (!coordinate || f.method != point.method) continue;
+      if (!is_coordinate || f.method != point.method) continue;
       view.role = point.role;
       view.variable = f.quantity;
-      view.unit = coordinate->unit;
+      view.unit = column->unit;
       return;
     }
   for (const StudyKind& kind : study_kinds())

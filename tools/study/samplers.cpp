@@ -23,6 +23,7 @@ Estimate monte_carlo(LimitFunction& limit, const SamplingTarget& target) {
   SamplingCourse course(limit, target);
   Estimate e;
   e.method = "monte_carlo";
+  e.influence = Influence(limit.run().law);
   double failures = 0.0, bad = 0.0, total = 0.0;
   std::vector<double> points;
   while (!(e.cov <= target.cov) && !course.is_over()) {
@@ -31,9 +32,11 @@ Estimate monte_carlo(LimitFunction& limit, const SamplingTarget& target) {
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t d = 0; d < n; ++d)
         points.push_back(random.normal(static_cast<std::uint64_t>(total) + i, static_cast<std::uint32_t>(d)));
-    for (const LimitValue& value : limit.at(points)) {
-      bad += value.is_bad;
-      failures += !value.is_bad && value.g < 0.0;
+    const std::vector<LimitValue>& values = limit.at(points);
+    for (std::size_t i = 0; i < count; ++i) {
+      bad += values[i].is_bad;
+      failures += !values[i].is_bad && values[i].g < 0.0;
+      e.influence.add(&points[i * n], 1.0, values[i]);
     }
     total += static_cast<double>(count);
     course.set(e, counted(failures, total, target), counted(failures + bad, total, target));
@@ -57,6 +60,10 @@ void add_findings(const Estimate& e, const LimitFunction& limit, const std::stri
   if (!is_both) add("probability", failed == "unsafe" ? e.unsafe : e.safe, failed == "unsafe" ? e.unsafe_interval : e.safe_interval);
   if (is_both) add("probability, runs without result as safe", e.safe, e.safe_interval);
   if (is_both) add("probability, runs without result as unsafe", e.unsafe, e.unsafe_interval);
+  for (Finding f : e.more) {
+    f.samples = e.samples;
+    answer.findings.push_back(std::move(f));
+  }
   if (!e.is_trusted) answer.degrade(Standing::not_trusted);
   else if (!e.is_target_met) answer.degrade(Standing::not_met);
 }

@@ -1,8 +1,10 @@
-// Estimates probabilities by sampling: Monte Carlo, importance sampling at design points, directional simulation and subset simulation.
+// Estimates probabilities by sampling: Monte Carlo, importance sampling at design points, directional simulation, subset simulation and
+// kriging.
 // Each returns a confidence interval and a status.
 #pragma once
 
 #include "tools/study/design_points.h"
+#include "tools/study/influence.h"
 
 namespace steplap::study {
 
@@ -18,6 +20,8 @@ struct Estimate {
   std::string status;
   bool is_target_met = false;
   bool is_trusted = true;
+  Influence influence;       ///< of the variables; only by methods whose samples have weights
+  std::vector<Finding> more; ///< findings of this method alone
 
   /// Returns the interval according to the setting `failed`: "safe" or "unsafe" select that treatment of runs without a result; another
   /// word gives the interval that contains both.
@@ -53,6 +57,10 @@ struct SamplingTarget {
 /// Subset simulation: nested levels, each with a given fraction of the previous one's probability. Repeats the whole simulation
 /// `repetitions` times; their scatter gives the interval. Failures are counted directly if equal values prevent a further level.
 [[nodiscard]] Estimate subset_simulation(LimitFunction& limit, const SamplingTarget& target);
+
+/// Active learning: a surrogate by kriging says which samples of a Monte Carlo population fail, and asks for runs where it is in doubt. For
+/// runs that are dear: at most 500 are made. Its interval contains the doubt and the scatter of the population.
+[[nodiscard]] Estimate kriging(LimitFunction& limit, const SamplingTarget& target);
 
 /// Adds the findings of an estimate to the answer.
 void add_findings(const Estimate& estimate, const LimitFunction& limit, const std::string& failed, Answer& answer);

@@ -33,6 +33,6 @@ Interval WeightedFraction::interval(double confidence) const {
 
 double WeightedFraction::effective() const { return squares_ > 0.0 ? sum_ * sum_ / squares_ : 0.0; }
 
-double WeightedFraction::effective_hits() const { return hit_squares_ > 0.0 ? hit_sum_ * hit_sum_ / hit_squares_ : 0.0; }
+double WeightedFraction::effective_hits() const { return hits_.effective(); }
 
 } // namespace steplap::study

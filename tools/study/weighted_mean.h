@@ -17,12 +17,15 @@ namespace steplap::study {
 class WeightedMean {
 public:
   void add(double w);
+  void add_zeros(long count) { count_ += count; }
 
   [[nodiscard]] long count() const { return count_; }
   [[nodiscard]] long hits() const { return hits_; } ///< number of values above zero
   [[nodiscard]] double mean() const;
   /// Returns the standard deviation of the mean; infinite as long as fewer than two values are above zero.
   [[nodiscard]] double deviation() const;
+  /// Returns the number of equal values that would say as much, (Σ w)²/Σ w² (Kish).
+  [[nodiscard]] double effective() const { return squares_ > 0.0 ? sum_ * sum_ / squares_ : 0.0; }
   /// Returns the largest value divided by the sum.
   [[nodiscard]] double largest_share() const;
   /// Returns the confidence interval within [0, 1]; [0, 1] as long as fewer than two values are above zero.

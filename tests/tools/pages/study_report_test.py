@@ -55,6 +55,10 @@ STUDIES = {
     "sobol": f'kind = "sensitivity"\n[sensitivity]\nmethod = "sobol"\nsamples = 200\n{variables(RANGE)}{PRODUCT}',
     "morris": f'kind = "sensitivity"\n[sensitivity]\nmethod = "morris"\n{variables(RANGE)}{PRODUCT}',
     "map": f'kind = "map"\n[map]\nvariables = ["a", "b"]\nexpression = "r - 2"\nstep = 0.1\n{variables(RANGE)}{PRODUCT}',
+    # The margin is normal with the deviation 0.3 √2: its index is 2 where the mean of a is 1.8485. The picture takes its margins from the
+    # answer, not from the response of that name.
+    "design": 'kind = "design"\n[design]\nbeta = 2\npoints = 7\n[[variable]]\nname = "a"\ndistribution = "normal"\nstandard_deviation = 0.3\nrange = [1, 4]\n'
+              f'{variables(NORMAL, "b")}[[response]]\nname = "margin"\nexpression = "a - b"\n[[limit_state]]\nname = "g"\nexpression = "margin"\n',
     # A jump: FORM's point does not lie on the limit state, and no sampling vouches for it.
     "distrusted": f'kind = "reliability"\n[reliability]\nmethods = ["form"]\nsamples = 200\n{variables(NORMAL)}'
                   '[[limit_state]]\nname = "g"\nexpression = "a + b > 4.5 ? -1 : 1"\n',
@@ -394,6 +398,35 @@ class StudyReportTest(unittest.TestCase):
         self.assertEqual([series[1]["x"][-1], series[1]["y"][-1]], [float(last["samples"]), float(last["value"])])
         shares = [float(r[2].split()[0]) for r in self.rows("#design-points .card:first-child")]
         self.assertAlmostEqual(sum(shares), 100.0, delta=0.2)  # three digits are written
+
+    def test_the_picture_of_a_design_says_by_itself_where_it_holds(self):
+        self.open("design")
+        tried = [(x, y) for t in self.traces("design") if t["mode"] == "markers" for x, y in zip(t["x"], t["y"])]
+        self.assertEqual((min(tried)[0], max(tried)[0]), (1.0, 4.0))
+        self.assertGreaterEqual(len(tried), 7)
+        for a, margin in tried:
+            self.assertAlmostEqual(margin, (a - 1) / (0.3 * 2**0.5) - 2, delta=1e-3)  # of first order, which is exact here
+        self.assertEqual(self.text("[data-chart=design] h3"), self.find("#answer .sentence").text)
+        words = self.text("[data-chart=design] .annotation-text")
+        self.assertIn("rare enough", words)
+        self.assertIn("not here", words)
+        self.assertRegex(words, r"1\.8\d")
+
+    def test_what_would_change_the_probability_is_ranked_by_scatter(self):
+        self.open("branches")
+        found = {f["quantity"]: f for f in self.export("branches", "--findings") if f["quantity"].startswith("probability with") and f["method"] != "form"}
+        halved = {name: float(found[f"probability with half the scatter of {name}"]["value"]) for name in "ab"}
+        marks = {t["name"]: t for t in self.traces("influence")}
+        self.assertEqual(set(marks), {"half its scatter", "mean 10 % smaller", "mean 10 % larger"})
+        self.assertEqual(marks["half its scatter"]["y"], sorted("ab", key=halved.get))
+        for name, value in zip(marks["half its scatter"]["y"], marks["half its scatter"]["x"]):
+            self.assertEqual(value, halved[name])
+        larger = dict(zip(marks["mean 10 % larger"]["y"], marks["mean 10 % larger"]["x"]))
+        # r = a b + a grows with both, and fails above 4.
+        for name in "ab":
+            self.assertGreater(larger[name], halved[name])
+        self.assertIn("as it is: ", self.text("[data-chart=influence] .annotation-text"))
+        self.assertEqual([r[0] for r in self.rows("#influence")], marks["half its scatter"]["y"])
 
     def test_a_fit_shows_its_record_residuals_and_correlations(self):
         self.open("fit")

@@ -126,8 +126,11 @@ TEST_CASE("two digits of an interval's width are written, none that is not known
 }
 
 TEST_CASE("the quantity of a finding says its part and its unit") {
-  const std::vector<study::ReportColumn> columns{
-      {"pressure", "Pa", "variable"}, {"mu", "", "variable"}, {"slide", "m", "response"}, {"record", "m", "history"}};
+  const std::vector<study::ReportColumn> columns{{"pressure", "Pa", "variable"},
+                                                 {"mu", "", "variable"},
+                                                 {"slide", "m", "response"},
+                                                 {"margin", "", "response"},
+                                                 {"record", "m", "history"}};
   const auto view = [&](const study::Finding& f) { return study::view_of(f, columns); };
   const study::FindingView mean = view({"monte_carlo", "slide", "mean", 0.0123456, 0.0121, 0.0125});
   CHECK(mean.value == "12.35");
@@ -141,6 +144,8 @@ TEST_CASE("the quantity of a finding says its part and its unit") {
   CHECK(view({"form", "design point 2", "pressure", 66506.0}).unit == "kPa");
   CHECK(view({"form", "design point 2", "pressure", 66506.0}).place == 2);
   CHECK(view({"map", "border 3 point 17", "pressure", 66506.0}).place == 3);
+  CHECK(view({"design", "value 1", "pressure", 66506.0}).role == "value");
+  CHECK(view({"design", "value 1", "margin", 0.1}).role == "margin"); // which is a response here, too, but no coordinate
   CHECK(view({"fit", "pressure", "value", 29985.0, 29000.0, 31000.0}).value == "30.0");
   CHECK(view({"fit", "pressure, mu", "correlation", 0.91234}).value == "0.912");
   CHECK(view({"fit", "record", "residual, root mean square", 0.00123456}).value == "1.235"); // mm
@@ -166,7 +171,7 @@ TEST_CASE("findings of every kind have a part to play") {
                                  text("kind = \"critical\"\n[critical]\nvariable = \"a\"\nexpression = \"r - 2\"\n", range),
                                  text("kind = \"map\"\n[map]\nvariables = [\"a\", \"b\"]\nexpression = \"r - 2\"\nstep = 0.2\n", range),
                                  text("kind = \"reliability\"\n[reliability]\nmethods = [\"form\", \"sorm\", \"importance_sampling\", "
-                                      "\"directional\", \"subset\", \"monte_carlo\"]\nsamples = 2000\nsubset_samples = 500\n",
+                                      "\"directional\", \"subset\", \"monte_carlo\", \"kriging\"]\nsamples = 2000\nsubset_samples = 500\n",
                                       normal) +
                                      "[[limit_state]]\nname = \"g\"\nexpression = \"4 - r\"\n"};
   for (const std::string& one : studies) {
@@ -234,6 +239,17 @@ TEST_CASE("the page of a study: all of it from the store, the same bytes, markup
     CHECK(data["samples"]["classes"][2]["shown"] == data["samples"]["classes"][2]["all"]); // rare ones are kept
     CHECK(data["distributions"]["of"][0]["total"] == 400);                                 // of all, however many are shown
   }
+}
+
+TEST_CASE("the table of variables has the unit and the meaning of each column of the samples") {
+  StudyBench bench;
+  (void)bench.run(k_sample);
+  const std::string table = study_does({"export", bench.at("study.sqlite"), "--variables"}).out;
+  CHECK(table.starts_with("name,role,unit,is\nforce,variable,N,\"normal, mean 30000 N, standard deviation 5000 N\"\n"));
+  std::string names;
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) names += "," + line.substr(0, line.find(','));
+  CHECK(has(bench.samples(), "evaluations" + names.substr(std::string(",name").size()) + "\n"));
 }
 
 TEST_CASE("of more samples than fit rare kinds are kept, all evenly") {

@@ -108,8 +108,7 @@ study.estimates = (() => {
     section.append(
       make('p', { class: 'note' },
         'Of all ways to fail the most likely: values of the variables, and which share of the distance each of them makes up ' +
-          '(alpha², the importance). To first order: the probability if a variable scattered half as much, ' +
-          'and if its mean were 10 % larger.'),
+          '(alpha², the importance).'),
       box);
     for (const [subject, list] of bySubject(findings)) {
       const beta = list.find((f) => f.role === 'beta');
@@ -117,19 +116,12 @@ study.estimates = (() => {
         const share = list.find((g) => g.role === 'importance' && g.variable === f.variable), size = share ? share.value : 0;
         const bar = make('span', { class: 'bar', title: `${data.plain(100 * size, 3)} %` });
         bar.style.width = `${Math.max(0, Math.min(1, size)) * 75}%`;
-        const changed = (role) => {
-          const found = list.find((g) => g.role === role && g.variable === f.variable);
-          return found ? found.text : '';
-        };
-        return [
-          f.variable, quantity(f), { text: `${data.plain(100 * size, 3)} %` }, { text: bar, class: 'bars' }, changed('half scatter'),
-          changed('larger mean')
-        ];
+        return [f.variable, quantity(f), { text: `${data.plain(100 * size, 3)} %` }, { text: bar, class: 'bars' }];
       });
       box.append(
         make('div', { class: 'card', 'data-point': subject }, make('h3', {}, `${subject}${beta ? `: beta ${minus(beta.text)}` : ''}`),
           ...(beta && beta.status ? [make('p', { class: 'doubt' }, beta.status)] : []),
-          scroll(table(['variable', 'value', 'importance', '', 'P, half the scatter', 'P, mean + 10 %'], rows, [1, 2, 4, 5]))));
+          scroll(table(['variable', 'value', 'importance', ''], rows, [1, 2]))));
     }
   }
 
@@ -249,6 +241,71 @@ study.estimates = (() => {
         yaxis: axis(`sigma: their scatter${unit}`, { rangemode: 'tozero' })
       }
     });
+  }
+  // Draws the probability with each change as a mark, and the present one as a line. First come variables of which half the scatter helps
+  // most.
+  const changes = [
+    { role: 'half scatter', name: 'half its scatter', symbol: 'diamond', colour: colours.blue },
+    { role: 'smaller mean', name: 'mean 10 % smaller', symbol: 'triangle-left', colour: colours.orange },
+    { role: 'larger mean', name: 'mean 10 % larger', symbol: 'triangle-right', colour: colours.vermillion }
+  ];
+  function influence() {
+    const of = (role) => data.findings.filter((f) => f.role === role && !f.place);
+    const sampled = of('half scatter');
+    if (!sampled.length) return;
+    // Where the samples do not tell: to first order, at the design point.
+    const firstOrder = (name) => data.findings.find((f) => f.place && f.role === 'half scatter' && f.variable === name);
+    const halved =
+      sampled.map((f) => (f.value === null ? firstOrder(f.variable) || f : f)).sort((a, b) => (a.value ?? -1) - (b.value ?? -1));
+    const { method, subject } = sampled[0], now = of('probability').filter((f) => f.method === method && f.subject === subject).at(-1);
+    const section = open('influence'), names = halved.map((f) => f.variable);
+    const found = (role, name) =>
+      (role === 'half scatter' ? halved : of(role)).find((f) => f.variable === name) || { value: null, text: '', interval: '', status: '' };
+    const marks = changes.map(({ role, name, symbol, colour }) => {
+      const list = names.map((v) => found(role, v)).filter((f) => f.value !== null);
+      return {
+        type: 'scatter',
+        mode: 'markers',
+        name,
+        x: list.map((f) => f.value),
+        y: list.map((f) => safe(f.variable)),
+        error_x: errorBars(list),
+        marker: { symbol: list.map((f) => (f.place ? `${symbol}-open` : symbol)), size: 13, color: colour },
+        hovertemplate: `%{y}, ${name}: %{x:.3g}<extra></extra>`
+      };
+    });
+    charts.add(grid(section, true), {
+      name: 'influence',
+      title: `Probability of '${subject}' if one thing were different`,
+      note: 'Bars are intervals, from the failures among the samples. Open: too few failures tell, so it is of first order.',
+      height: barHeight(1.4 * names.length),
+      traces: marks,
+      layout: {
+        xaxis: axis('probability', { type: 'log' }),
+        yaxis: {...barAxis, categoryorder: 'array', categoryarray: names.map(safe) },
+        shapes:
+          [{ type: 'line', x0: now.value, x1: now.value, y0: 0, y1: 1, yref: 'paper', line: { color: study.charts.ink, dash: 'dash' } }],
+        annotations: [{
+          x: Math.log10(now.value),
+          y: 1,
+          yref: 'paper',
+          yanchor: 'top',
+          xanchor: 'left',
+          showarrow: false,
+          text: `as it is: ${now.text}`
+        }]
+      }
+    });
+    const rows = names.map((name) => {
+      const mean = data.findings.find((f) => f.subject === name && f.quantity === 'mean given failure'),
+            text = (f) => (f.text ? `${f.text}${f.place ? ' (first order)' : ''}`
+                : f.status ? 'not known'
+                           : '–'),
+            to = (role) => text(found(role, name));
+      return [name, ...changes.map(({ role }) => to(role)), mean ? quantity(mean) : ''];
+    });
+    section.append(make('p', { class: 'note' }, `From ${now.text} the probability would change to:`),
+      scroll(table(['variable', ...changes.map(({ name }) => name), 'its mean in failures'], rows, [1, 2, 3, 4])));
   }
   function indices() {
     const drawings = {
@@ -380,9 +437,16 @@ study.estimates = (() => {
       }
     });
   }
+  // A study of several samplings of one method keeps all of them: the number of samples begins anew with each.
+  function lastSampling(g) {
+    const begin = g.samples.findLastIndex((n, i) => i > 0 && n < g.samples[i - 1]);
+    if (begin < 0) return g;
+    const part = (list) => list.slice(begin);
+    return {...g, samples: part(g.samples), value: part(g.value), low: part(g.low), high: part(g.high) };
+  }
   function convergence() {
     const groups = new Map();
-    for (const g of data.growth) {
+    for (const g of data.growth.map(lastSampling)) {
       const key = `${g.subject}: ${g.quantity}`;
       groups.set(key, [...(groups.get(key) || []), {...g, name: g.method, unit: '', isShare: true }]);
     }
@@ -404,9 +468,11 @@ study.estimates = (() => {
     const entries = [...groups].filter(([, series]) => series.some((s) => s.samples.length));
     if (!entries.length) return;
     const section = open('convergence'),
-          thinned = data.growth.filter((g) => g.samples.length < g.all).map((g) => `${g.samples.length} of ${g.all} of ${g.method}`);
+          thinned = data.growth.filter((g) => g.samples.length < g.all).map((g) => `${g.samples.length} of ${g.all} of ${g.method}`),
+          isSeveral = data.growth.some((g) => lastSampling(g) !== g);
     section.append(make('p', { class: 'note' },
-      `The estimate as samples came in, and its interval.${thinned.length ? ` Drawn: ${thinned.join(', ')}.` : ''}`));
+      `The estimate as samples came in, and its interval.${isSeveral ? ' Of several samplings the last is drawn.' : ''}${
+        thinned.length ? ` Drawn: ${thinned.join(', ')}.` : ''}`));
     several(section, entries, (box, [title, series]) => settled(box, title, series));
   }
 
@@ -453,5 +519,5 @@ study.estimates = (() => {
       rows.push([n.name, roles[n.role] || n.role, { text: n.is, class: 'words' }, '', n.unit ? `in ${data.pretty(n.unit)}` : '']);
     open('variables').append(scroll(table(['name', '', 'is', 'stands at', ''], rows, [3])));
   }
-  return { answer, designPoints, indices, needs, fit, convergence, everything, variables, bySubject };
+  return { answer, designPoints, influence, indices, needs, fit, convergence, everything, variables, bySubject };
 })();

@@ -11,6 +11,7 @@
   if (!data.about.numbers.length && !data.about.variables.length)
     at('subtitle').append(' · The store was made before units were kept in it: numbers are in SI. Run the study again to have them.');
   study.estimates.answer();
+  study.estimates.influence();
   study.estimates.designPoints();
   study.estimates.indices();
   study.estimates.needs();

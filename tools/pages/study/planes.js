@@ -134,6 +134,29 @@ study.planes = (() => {
   }
 
   // --- design ----------------------------------------------------------------------------------------
+  // Words at the top of the picture, in the shaded stretches and in those between them, so that it says by itself where limits hold.
+  function stretchWords(from, to, reach, claim) {
+    const word = (low, high, text) => ({ x: 0.5 * (low + high), y: 1, yref: 'paper', yanchor: 'top', showarrow: false, text });
+    const borders = [reach[0], ...from.flatMap((x, i) => [x, to[i]]), reach[1]], words = [];
+    for (let i = 0; i + 1 < borders.length; ++i)
+      if (borders[i + 1] - borders[i] > 0.08 * (reach[1] - reach[0])) // there is room
+        words.push(word(borders[i], borders[i + 1], i % 2 ? `<b>${claim}</b>` : 'not here'));
+    return words;
+  }
+  // Marks an end of a stretch with its value, unless the range ends there.
+  function borderMark(f, factor) {
+    return {
+      x: f.value * factor,
+      y: 0,
+      ax: 0,
+      ay: 60,
+      yanchor: 'top',
+      arrowhead: 2,
+      arrowcolor: colours.green,
+      font: { size: 14 },
+      text: `<b>${safe(study.answers.quantity(f))}</b>${f.interval ? `<br>${safe(study.answers.interval(f))}` : ''}`
+    };
+  }
   // Plots the values tried with their margins. Intervals in which all limits hold are shaded.
   function design() {
     const points = new Map(), ends = (role) => data.findings.filter((f) => f.role === role && f.value !== null);
@@ -163,9 +186,9 @@ study.planes = (() => {
         y: tried.map((p) => p.margin),
         line: { color: colours.grey, width: 1 }
       },
-      trace('holds', tried.filter((p) => p.margin >= 0), looks[0].marker),
-      trace('does not hold', tried.filter((p) => p.margin < 0 && !p.doubt), looks[1].marker),
-      trace('no trusted result', tried.filter((p) => p.doubt), looks[2].marker)
+      trace('holds', tried.filter((p) => p.margin >= 0), {...looks[0].marker, size: 9 }),
+      trace('does not hold', tried.filter((p) => p.margin < 0 && !p.doubt), {...looks[1].marker, size: 9 }),
+      trace('no trusted result', tried.filter((p) => p.doubt), {...looks[2].marker, size: 9 })
     ].filter((t) => t.x.length);
     const shade = (f, i) => ({
       type: 'rect',
@@ -178,19 +201,25 @@ study.planes = (() => {
       fillcolor: `${colours.green}22`,
       line: { color: colours.green, width: 1 }
     });
-    const box = start(`Where ${isSure ? 'all limits hold' : 'the target is reached'}`);
+    const box = start(`Where ${isSure ? 'all limits hold' : 'the target is reached'}`), scaled = (f) => f.value * x.factor;
+    const reach = [Math.min(...tried.map(scaled)), Math.max(...tried.map(scaled))];
     section.append(box);
     charts.add(box, {
       name: 'design',
+      title: data.notes[0] || '',
       traces,
-      height: 400,
+      height: 420,
       note: `Shaded: ${isSure ? 'all limits hold' : 'the probability of failure is at most the target'}. The ${
         points.size} values that were tried are drawn.`,
       layout: {
         xaxis: axis(x.head),
-        yaxis: axis(isSure ? 'least margin of all limits' : 'reliability index less the target',
+        yaxis: axis(isSure ? 'margin of the worst limit (0: just held)' : 'reliability index less the target (0: just reached)',
           { zeroline: true, zerolinewidth: 1.5, zerolinecolor: study.charts.ink }),
-        shapes: from.map(shade)
+        shapes: from.map(shade),
+        annotations: [
+          ...stretchWords(from.map(scaled), to.map(scaled), reach, isSure ? 'all limits hold' : 'rare enough'),
+          ...[...from, ...to].filter((f) => f.status !== 'the end of the range').map((f) => borderMark(f, x.factor))
+        ]
       }
     });
   }

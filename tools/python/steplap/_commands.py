@@ -195,26 +195,6 @@ def _exported(store: str, *options: str) -> Any:
     return pandas.read_csv(io.StringIO(_call(["study", "export", store, *options], (0, 5))[1]), keep_default_na=False, na_values=["", "nan"])
 
 
-def _units(path: str, samples: Any) -> dict[str, str]:
-    """Returns the units of the sample columns that are variables or channels; units of expressions are unknown."""
-    import fnmatch
-    import tomllib
-    from ._steplap import load
-    document = tomllib.loads(pathlib.Path(path).read_text(encoding="utf-8"))
-    if not isinstance(document.get("model"), str):
-        return {}
-    model = load(pathlib.Path(path).parent / document["model"])
-    units = {}
-    for variable in document.get("variable", []):
-        if "path" in variable:
-            units[variable["name"]] = model.unit(variable["path"])
-    for response in document.get("response", []):
-        matching = fnmatch.filter(model.channels, str(response.get("channel", "")))
-        if matching and response.get("what") in ("lowest", "highest", "final"):
-            units[response["name"]] = model.channels[matching[0]]
-    return {name: unit for name, unit in units.items() if name in samples.columns}
-
-
 def study(what: Any, store: Any = None, threads: int | None = None, restart: bool = False, changed: bool = False) -> Study:
     """Runs a study. `what`: path of its file, or a dictionary with the structure of the file, whose `model` may be a Model.
 
@@ -233,7 +213,7 @@ def study(what: Any, store: Any = None, threads: int | None = None, restart: boo
         code, output, messages = _call(["study", "run", path, "--json", *options], (0, 5))
         text = _checked(output)["results"][0]["text"]
         samples = _exported(kept)
-        samples.attrs["units"] = _units(path, samples)
+        samples.attrs["units"] = dict(_exported(kept, "--variables").fillna("").set_index("name")["unit"])
         found = Study(text, _exported(kept, "--findings"), samples, code == 0)
     if not found.is_reached:
         warnings.warn(messages.strip() or "the study did not reach the wanted accuracy, or found nothing", stacklevel=2)

@@ -13,6 +13,7 @@
 #include "tools/study/program/progress_line.h"
 #include "tools/study/program/show.h"
 #include "tools/study/program/whole_number.h"
+#include "tools/study/report_about.h"
 #include "tools/study/report_page.h"
 #include "tools/study/run_study.h"
 
@@ -27,7 +28,8 @@ namespace {
 struct Options {
   std::string file;
   std::optional<std::string> store, sample, output, threads;
-  bool is_restarted = false, is_changed = false, is_findings = false, is_growth = false, is_histories = false, is_posterior = false;
+  bool is_restarted = false, is_changed = false, is_findings = false, is_growth = false, is_histories = false, is_posterior = false,
+       is_variables = false;
   bool is_reported = false, is_overwriting = false;
 };
 
@@ -175,6 +177,12 @@ has not ended is shown as far as it is. Without -o it is written beside the stor
   return command;
 }
 
+std::string variables_of(Store& store) {
+  const std::string about = store.setting("about");
+  if (about.empty()) throw UsageError("the store was made before units were kept in it: run the study again to have them");
+  return variables_csv(about);
+}
+
 Command export_command() {
   const auto o = std::make_shared<Options>();
   Command command;
@@ -184,12 +192,14 @@ Command export_command() {
   command.options = {{"FILE", &o->file, "FILE", "study file or store", true},
                      store_option(o),
                      {"--findings", &o->is_findings, "", "what was found instead of the samples"},
+                     {"--variables", &o->is_variables, "", "names, units and distributions of the columns of the samples"},
                      {"--growth", &o->is_growth, "", "estimates as they grew instead of the samples"},
                      {"--histories", &o->is_histories, "", "of a fit: what was measured, and what was found to fit it"},
                      {"--posterior", &o->is_posterior, "", "with [[evidence]]: values that agree with it"}};
   command.run = [o](Console& console) {
     Store store(store_of(*o));
     if (o->is_findings) export_findings(store.findings(), console.out);
+    else if (o->is_variables) console.out << variables_of(store);
     else if (o->is_growth) export_findings(store.growth(), console.out);
     else if (o->is_histories) export_histories(store.histories(), console.out);
     else if (!o->is_posterior) export_samples(store, console.out);
