@@ -57,6 +57,7 @@ struct RunStatistics {
   double dissipated = 0.0, work = 0.0;                         ///< J
   std::optional<double> passed_pulse;        ///< time, s, at which time stepping passed over part of a load much shorter than its step
   Integrator::DividedSteps divided_steps;    ///< fixed steps that were divided because bodies would have turned too far
+  double rounded_tolerance = 0.0;            ///< relative local error of steps where rounding is larger than the tolerance; 0: nowhere
   std::optional<double> undecided_condition; ///< time, s, at which it is unknown whether the condition of an action was briefly true
   double cpu_seconds = 0.0;                  ///< CPU time of this thread, including samples
 };
