@@ -4,6 +4,7 @@
 #include "elements/contact_laws.h"
 #include "elements/machinery/lift_curve.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/system/element_failure.h"
 #include "mbd/system/motion_formula.h"
 #include "mbd/system/system.h"
 #include "mbd/system/turn_table.h"
@@ -18,6 +19,7 @@ namespace steplap {
 namespace {
 
 struct CamEntry {
+  std::string name;
   int a = k_ground, b = k_ground, cam = k_ground;
   AxisMeasure measure; ///< displacement of a relative to b along the axis
   LiftCurve curve;
@@ -72,6 +74,7 @@ public:
 
   void add_forces(Evaluation& e) const override {
     for (const ElementData& entry : entries) {
+      refuse_unsearched(entry, e.motion);
       const CamGap<double> gap = gap_now(entry, e.motion);
       const UnitMode mode = mode_of(entry, e);
       const double f = entry.law.force(gap.value, gap.rate, mode);
@@ -138,6 +141,14 @@ public:
 private:
   [[nodiscard]] const ElementData& entry_at(int element) const { return entries[static_cast<std::size_t>(element)]; }
   static UnitMode mode_of(const ElementData& entry, const Evaluation& e) { return entry.holds ? k_contact_pressed : e.mode[entry.unit]; }
+  static void refuse_unsearched(const ElementData& entry, const Motion<double>* motion) {
+    const double angle = motion[entry.cam].theta - motion[entry.b].theta + entry.zero;
+    if (std::abs(angle) > entry.curve.searched_to())
+      throw ElementFailure("'formula' of cam '" + entry.name + "' does not repeat itself, and beyond " +
+                               rounded_text(entry.curve.searched_to() / (2.0 * std::numbers::pi), 3) +
+                               " turns steps may leap over its lobes: give a formula with whole periods in 64 turns, or 'lift' as points",
+                           {entry.name});
+  }
   // Includes the rounding error of the lift by that of the angle, which may be many turns.
   static double rounding_of(const ElementData& entry, const CamGap<double>& gap, const Evaluation& e) {
     const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b], &cam = e.motion[entry.cam];
@@ -215,7 +226,7 @@ void compile_cam(const Element& element, SystemBuilder& builder) {
   std::optional<LiftCurve> curve = curve_of(e, builder);
   if (!curve) return;
   CamGroup& group = builder.group<CamGroup>();
-  CamEntry entry{a.body, b.body, cam.body, {a.point, b.point, builder.direction(b, e.axis)}, std::move(*curve)};
+  CamEntry entry{e.name, a.body, b.body, cam.body, {a.point, b.point, builder.direction(b, e.axis)}, std::move(*curve)};
   entry.zero = e.start_angle - (builder.reference(cam.body).theta - builder.reference(b.body).theta);
   entry.holds = e.holds;
   const double now = CamGroup::gap_now(entry, &builder.reference(0)).value;

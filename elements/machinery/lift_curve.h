@@ -7,6 +7,7 @@
 #include "mbd/base/types.h"
 #include "mbd/formula/formula_program.h"
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -30,10 +31,11 @@ public:
 
   /// Returns the lift and its derivatives at an angle, rad.
   [[nodiscard]] Lift at(double angle) const;
-  /// Returns the knots, rad. For a curve through points they are the angles of the points. For a formula they divide a turn so that it is
-  /// almost constant or close to a polynomial between them: none if steps of one radian show all lobes, and those of 20 turns in either
-  /// direction if the lobes differ from turn to turn. If is_periodic(), the last knot is the first plus a whole turn.
+  /// Returns the angles of the points. For a formula: angles between which it is almost constant or close to a polynomial, none if steps of
+  /// one radian show all lobes. If is_periodic(), the last is the first plus a whole turn.
   [[nodiscard]] std::vector<double> knots() const;
+  /// Returns the angle, rad, beyond which, either way, a formula may have lobes that knots() do not tell; infinite: nowhere.
+  [[nodiscard]] double searched_to() const { return searched_to_; }
   /// Returns true if the knots are the same in each turn.
   [[nodiscard]] bool is_periodic() const { return is_periodic_; }
   /// Returns true if the points span one whole turn.
@@ -48,6 +50,7 @@ private:
   bool is_periodic_ = false;      ///< points or knots are the same in each turn
   std::optional<FormulaProgram> formula_;
   std::vector<double> formula_knots_;
+  double searched_to_ = std::numeric_limits<double>::infinity();
 };
 
 } // namespace steplap

@@ -117,6 +117,7 @@ private:
   void note_counts() {
     steps_ = explicit_->steps() + implicit_->steps();
     rejections_ = explicit_->rejections() + implicit_->rejections();
+    rounded_tolerance_ = std::max(explicit_->rounded_tolerance(), implicit_->rounded_tolerance());
   }
 
   // Updates the criteria for a change of method. The change itself is made after the step has been used.

@@ -50,7 +50,7 @@ Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& setti
     : system_(dynamics.system()), settings_(settings), y0_(max_dimension, 0.0), y1_(max_dimension, 0.0), weight_(max_dimension, 0.0),
       scratch_(3 * max_dimension, 0.0), event_value0_(system_.event_count, 1.0), event_value1_(event_value0_),
       event_derivative0_(event_value0_), event_derivative1_(event_value0_), nodes_(system_.event_count), turn_limit_(system_),
-      slip_scale0_(max_dimension, 0.0), slip_scale1_(slip_scale0_), slip_scale_inside_(slip_scale0_) {
+      rate_rounding_(max_dimension), slip_scale0_(max_dimension, 0.0), slip_scale1_(slip_scale0_), slip_scale_inside_(slip_scale0_) {
   double size = 0.0;
   for (const BodyData& body : system_.bodies)
     if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
@@ -63,6 +63,7 @@ void Integrator::begin_at(Dynamics& dynamics, double t, const double* y) {
   dynamics.begin_stages();
   t0_ = t1_ = t;
   std::copy(y, y + n_, y0_.begin());
+  rate_rounding_.restart();
   on_restart(dynamics);
 }
 
@@ -208,7 +209,18 @@ void Integrator::record_stage_events(Dynamics& dynamics, const double* dy, doubl
   nodes_.add(theta, dynamics.event_value().data(), dynamics.needs_rigid_joint_events(is_due));
 }
 
+// Precondition: the weights refer to y0_, and h_ is the length of the step before.
+void Integrator::note_rounding() {
+  if (!rate_rounding_.is_known()) return;
+  for (int i = 0; i < n_; ++i) {
+    const double share = rate_rounding_.over_step(i, h_) * weight_[i]; // of the tolerance
+    if (share > 1.0) rounded_tolerance_ = std::max(rounded_tolerance_, share * settings_.tolerance);
+  }
+}
+
 void Integrator::update_weights(Dynamics& dynamics) {
+  if (settings_.tolerance < RateRounding::k_least_tolerance)
+    rate_rounding_.note_step(dynamics, t0_, y0_.data(), k0_, length_scale_, scratch_.data());
   const Layout& layout = dynamics.layout();
   const int m = dynamics.coordinate_count();
   const double tolerance = settings_.tolerance;
@@ -244,12 +256,15 @@ void Integrator::update_weights(Dynamics& dynamics) {
     energy += 0.5 * cluster.mass * (v[0] * v[0] + v[1] * v[1] + floor_rate * floor_rate) + 0.5 * cluster.inertia * v[2] * v[2];
   }
   weight_[n_ - 2] = weight_[n_ - 1] = energy > 0.0 ? 1.0 / (tolerance * energy) : 0.0;
+  note_rounding();
 }
 
 double Integrator::error_norm(const double* error) const {
+  const bool is_rounded = rate_rounding_.is_known();
   double sum = 0.0;
   for (int i = 0; i < n_; ++i) {
-    const double e = error[i] * weight_[i];
+    double e = error[i] * weight_[i];
+    if (is_rounded) e /= std::max(1.0, rate_rounding_.over_step(i, h_) * weight_[i]);
     sum += e * e;
   }
   return std::sqrt(sum / n_);

@@ -7,6 +7,7 @@
 
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/integrators/event_nodes.h"
+#include "mbd/integrators/rate_rounding.h"
 #include "mbd/integrators/singular_crossing.h"
 #include "mbd/integrators/turn_limit.h"
 
@@ -115,6 +116,8 @@ public:
     int a = k_ground, b = k_ground;                            ///< pair of bodies with the fastest relative rotation
   };
   [[nodiscard]] const DividedSteps& divided_steps() const { return divided_; }
+  /// Returns the relative local error to which steps were controlled where rounding is larger than the tolerance, the largest; 0: nowhere.
+  [[nodiscard]] double rounded_tolerance() const { return rounded_tolerance_; }
   [[nodiscard]] long steps() const { return steps_; }
   [[nodiscard]] long rejections() const { return rejections_; }
   [[nodiscard]] double max_position_residual() const { return residual_.position; }
@@ -126,6 +129,7 @@ protected:
   [[nodiscard]] virtual bool withdraw(Dynamics& /*dynamics*/, double /*h*/) { return false; }
   [[nodiscard]] bool are_dense_evaluations_expected() const { return are_dense_evaluations_expected_; }
   void begin_at(Dynamics& dynamics, double t, const double* y);
+  void note_rounding();
   void note_begin(Dynamics& dynamics);
   /// Sets where the rates at both ends are stored. Methods with more stages use their own arrays.
   void set_rate_storage(double* k0, double* k1) {
@@ -161,6 +165,7 @@ protected:
   void note_divided(double h);
   /// Updates the weights of the error norm: 1/(tolerance · scale) per number of the state, 0 for locked coordinates.
   void update_weights(Dynamics& dynamics);
+  /// Returns the error norm of a step of length h_: a value of at most 1 is within the tolerance, or within rounding (rate_rounding.h).
   [[nodiscard]] double error_norm(const double* error) const;
   /// Returns the error norm. Near singular positions the component of the error that projection removes gets a small weight only,
   /// because the directions of the constraints change within a step. Changes `error`. Precondition: the last evaluation was near the end
@@ -189,6 +194,8 @@ protected:
   double longest_step_ = std::numeric_limits<double>::infinity();
   TurnLimit turn_limit_;
   DividedSteps divided_;
+  RateRounding rate_rounding_;
+  double rounded_tolerance_ = 0.0;
   double last_rigid_joint_evaluation_ = 0.0; ///< theta of the last evaluation of joints inside clusters
   /// Per velocity: speed scale of slip (Dynamics::slip_scales) at the start and the end of the step.
   std::vector<double> slip_scale0_, slip_scale1_;

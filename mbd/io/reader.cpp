@@ -63,13 +63,19 @@ struct TableSource {
   bool is_usable = true;
 };
 
-// Throws an error with a hint if the file is a study. Otherwise each of its tables would be reported as an unknown key.
-void refuse_study(const Document& document) {
+// Refuses files of other kinds by a key that a model has not; each of their tables would be an unknown key of its own.
+void refuse_other_files(const Document& document) {
   const Node* const kind = document.root.find("kind");
-  if (!kind || kind->type != Node::Type::text) return;
-  throw ModelError(
-      {{kind->where_key(), "this is a study of kind '" + kind->text() +
-                               "', not a model: `steplap study` reads and runs it; check the model that its key 'model' names"}});
+  if (kind && kind->type == Node::Type::text)
+    throw ModelError(
+        {{kind->where_key(), "this is a study of kind '" + kind->text() +
+                                 "', not a model: `steplap study` reads and runs it; check the model that its key 'model' names"}});
+  constexpr std::pair<const char*, const char*> k_of_assess[] = {
+      {"criterion", "these are criteria of a decision, not a model: `steplap assess` reads them"},
+      {"handover", "this is a shipment, not a model: `steplap assess` reads it"}};
+  for (const auto& [key, what] : k_of_assess)
+    if (const Node* const table = document.root.find(key))
+      throw ModelError({{table->where_key(), std::string(what) + " together with a model"}});
 }
 
 class Reader {
@@ -79,7 +85,7 @@ public:
 
   /// Returns the model as given and the completed model. If `text` is not null, it receives the text of the document.
   std::pair<Model, Model> read(const std::vector<std::string>& overrides, std::string* text = nullptr) {
-    refuse_study(document_);
+    refuse_other_files(document_);
     settle(document_, overrides, names_, catalogue_);
     if (text) *text = standalone_text(document_, catalogue_);
     refuse_control_characters(document_);

@@ -208,6 +208,23 @@ std::string number_hint(std::string_view line, int column) {
   return "";
 }
 
+// Returns what a text is that begins like a result in JSON or like a table of numbers; empty if it begins like neither.
+std::string other_format_hint(std::string_view text, int line) {
+  constexpr std::string_view k_blank = " \t\r\n";
+  std::string_view first = text;
+  for (auto at = first.find_first_not_of(k_blank); at != std::string_view::npos && first[at] == '#'; at = first.find_first_not_of(k_blank))
+    first.remove_prefix(std::min(first.size(), first.find('\n', at)));
+  const auto begin = first.find_first_not_of(k_blank);
+  if (begin == std::string_view::npos) return "";
+  if (first[begin] == '{') return ". It is JSON, not a model: `steplap show` takes the folder of a run, and its model.toml is the model";
+  first = first.substr(begin, first.find('\n', begin) - begin);
+  const bool is_table = first == line_at(text, line).substr(0, first.size()) && first.find('=') == std::string_view::npos &&
+                        first.find_first_of(",;\t") != std::string_view::npos && first[0] != '[';
+  return is_table
+             ? ". It is a table of numbers, not a model: `steplap assess` reads recorders' files, and a signal of kind 'record' names one"
+             : "";
+}
+
 } // namespace
 
 Node parse_toml(const std::string& text, const std::string* file) {
@@ -218,7 +235,7 @@ Node parse_toml(const std::string& text, const std::string* file) {
     const toml::source_region& region = error.source();
     throw ModelError(Location{*file, line_of(region), column_of(region)},
                      "not valid TOML: " + std::string(error.description()) +
-                         number_hint(line_at(text, line_of(region)), column_of(region)));
+                         number_hint(line_at(text, line_of(region)), column_of(region)) + other_format_hint(text, line_of(region)));
   }
 }
 

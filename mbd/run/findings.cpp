@@ -1,5 +1,6 @@
 #include "mbd/run/findings.h"
 
+#include "mbd/base/number_text.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/events/event_handler.h"
@@ -366,6 +367,18 @@ static std::optional<Finding> divided_steps(const LoadedModel& loaded, const Int
   return finding;
 }
 
+static std::optional<Finding> tolerance_below_rounding(const LoadedModel& loaded, double rounded) {
+  if (rounded == 0.0) return std::nullopt;
+  Finding finding;
+  finding.code = "tolerance_below_rounding";
+  finding.level = FindingLevel::note;
+  finding.text = "tolerance = " + number_text(options_of(loaded.model).settings.tolerance) +
+                 " lies below rounding: the forces of stiff elements are known no better than their stiffness times the rounding of "
+                 "places, and steps are controlled to " +
+                 rounded_text(rounded, 2) + " there. A smaller tolerance makes them no more accurate";
+  return finding;
+}
+
 std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& result) {
   Findings findings = contacts_beyond_edges(loaded, result);
   for (const ChannelRange& range : result.ranges)
@@ -376,6 +389,8 @@ std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& 
   append(findings, contacts_too_deep(loaded, result.ranges));
   append(findings, parts_outside(loaded, result));
   if (const std::optional<Finding> divided = divided_steps(loaded, result.statistics.divided_steps)) findings.push_back(*divided);
+  if (const std::optional<Finding> rounded = tolerance_below_rounding(loaded, result.statistics.rounded_tolerance))
+    findings.push_back(*rounded);
   append(findings, actions_that_wait(loaded, result));
   return findings;
 }

@@ -33,6 +33,7 @@ RunStatistics sum_of(const RunStatistics& a, const RunStatistics& b) {
   if (a.passed_pulse) sum.passed_pulse = a.passed_pulse;
   if (a.undecided_condition) sum.undecided_condition = a.undecided_condition;
   if (a.divided_steps.shortest < b.divided_steps.shortest) sum.divided_steps = a.divided_steps;
+  sum.rounded_tolerance = std::max(a.rounded_tolerance, b.rounded_tolerance);
   sum.divided_steps.count = a.divided_steps.count + b.divided_steps.count;
   return sum;
 }

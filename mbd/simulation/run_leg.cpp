@@ -574,6 +574,7 @@ RunStatistics RunLeg::statistics() const {
   s.steps += integrator_->steps();
   s.rejections = integrator_->rejections();
   s.divided_steps = integrator_->divided_steps();
+  s.rounded_tolerance = integrator_->rounded_tolerance();
   if (formula_search_) s.undecided_condition = formula_search_->undecided();
   s.evaluations = dynamics_.evaluations() - evaluations_behind_end_;
   s.coded_stages = dynamics_.coded_stages();

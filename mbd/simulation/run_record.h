@@ -55,6 +55,7 @@ struct RunStatistics {
   double dissipated = 0.0, work = 0.0;                         ///< dissipated energy and work, J
   std::optional<double> passed_pulse;        ///< time, s, at which time stepping averaged a load much shorter than its step; empty: none
   Integrator::DividedSteps divided_steps;    ///< fixed steps that were divided because of large rotations
+  double rounded_tolerance = 0.0;            ///< relative local error of steps where rounding is larger than the tolerance; 0: nowhere
   std::optional<double> undecided_condition; ///< time, s, at which the condition of an action may have been true for a moment; empty: none
   double cpu_seconds = 0.0;                  ///< CPU time of this thread, s, including samples
 };

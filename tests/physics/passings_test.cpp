@@ -209,6 +209,34 @@ Passing random_cam_by_formula(RandomNumber& own) {
   return passing;
 }
 
+// A lobe in one turn only, up to 300 turns away, alone, on a wave that repeats itself never, or on a slope away from the follower.
+Passing random_single_lobe(RandomNumber& own) {
+  const double rate = own.either(1.0, 300.0), height = own.between(1e-3, 0.02), gap = height * own.between(0.1, 0.9);
+  const double width = own.decades(-3.0, -0.5), top = std::copysign(k_turn * own.decades(0.0, 2.477), rate);
+  const int kind = static_cast<int>(own.between(0.0, 3.0));
+  const double wave = kind == 1 ? 0.05 * gap : 0.0, slope = kind == 2 ? -std::copysign(own.decades(-5.0, -2.0), rate) : 0.0;
+  const auto lift = [&](double x) {
+    return height * std::exp(-(x - top) * (x - top) / (width * width)) + wave * std::sin(std::sqrt(2.0) * x) + slope * (x - top);
+  };
+  double before = top - std::copysign(8.0 * width, rate), behind = top; // in which it rises, and touches once
+  const double start_gap = gap + lift(0.0);
+  if (lift(0.0) > 0.5 * (height - gap)) return random_single_lobe(own); // the lobe is no higher than the way down to it
+  for (int i = 0; i < 200; ++i) (lift(0.5 * (before + behind)) < start_gap ? before : behind) = 0.5 * (before + behind);
+  Passing passing;
+  passing.text = k_no_gravity + body("shaft", "mass = 1.0; inertia = 1e6; angular_velocity = " + digits(rate)) +
+                 element("revolute", "pin", "a = 'shaft'") + body("follower", "mass = 1.0; inertia = 1.0; position = [0.0, 1.0]") +
+                 element("prismatic", "guide", "a = 'follower'; axis = [0.0, 1.0]") +
+                 element("cam", "it",
+                         "a = 'follower'; cam = 'shaft'; stiffness = 1e5; gap = " + digits(gap) + "; formula = \"" + metres(height) +
+                             " * exp(-((value - (" + digits(top) + ")) / " + digits(width) + ")^2) + " + metres(wave) +
+                             " * sin(sqrt(2) * value) + (" + metres(slope) + ") * (value - (" + digits(top) + "))\"");
+  passing.first = behind / rate;
+  passing.end = 1.05 * (top + std::copysign(10.0 * width, rate)) / rate;
+  const double step = 1e-3 * width, rise = std::abs(lift(behind + step) - lift(behind - step)) / (2.0 * step);
+  passing.off = (1e-9 + 1e-12 * std::abs(top) + 1e-12 / rise) / std::abs(rate); // rounding of the angle, and 1e-12 m by the slope
+  return passing;
+}
+
 // Two arms that turn at rates of their own and meet with their ends, after many turns or never. The first time is found by steps that
 // the distance of the ends cannot use up.
 Passing random_meeting(RandomNumber& own) {
@@ -421,6 +449,7 @@ TEST_CASE("what the end of an arm touches in even rotation is found by every met
 TEST_CASE("lobes of cams are found by every method") {
   check_all("cam", 2 * cases(), random_cam);
   check_all("cam by formula", 2 * cases(), random_cam_by_formula);
+  check_all("single lobe", 2 * cases(), random_single_lobe);
 }
 
 TEST_CASE("two arms that turn evenly meet where they do, after however many turns") { check_all("meeting", 2 * cases(), random_meeting); }
@@ -460,4 +489,30 @@ TEST_CASE("the knots of a lift by formula lie about its narrow lobes, and a harm
   const std::size_t narrow = knots("'10 mm' * exp(-(sin((value - 3.3) / 2) / 0.002)^2)");
   CHECK(narrow > 5); // halvings from a turn to the lobe of 4 mrad
   CHECK(narrow < 200);
+  // One lobe of 10 mm at 64 and at 160 000 turns, and on a slope of which it is a tenth.
+  CHECK(knots("'10 mm' * exp(-((value - 400) / 0.01)^2)") > 5);
+  CHECK(knots("'10 mm' * exp(-((value + 1e6) / 0.01)^2)") > 5);
+  CHECK(knots("'100 mm' * value + '10 mm' * exp(-((value - 3) / 0.01)^2)") > 5);
+  CHECK(knots("'100 mm' * value + '10 mm' * exp(-((value - 300) / 0.01)^2)") > 5);
+  CHECK(knots("'100 mm' * value^2") == 0);
+  CHECK(knots("'10 mm' * sin(value / 3)") == 0); // comes again after three turns
+  // A lobe in every third turn: there are knots in each.
+  CHECK(knots("'10 mm' * exp(-1e4 * (1 - cos((value - 10) / 3)))") > 5);
+}
+
+TEST_CASE("a lift whose lobes nothing bounds ends the run where its search ended") {
+  const auto turned = [](const std::string& formula, double turns) {
+    const auto system = compile(scene(
+        k_no_gravity + body("cam", "mass = 1.0; inertia = 1.0; angular_velocity = 1.0") + element("revolute", "pin", "a = 'cam'") +
+        body("foot", "mass = 1.0; inertia = 0.1; position = [0.0, 1.0]") + element("prismatic", "guide", "a = 'foot'; axis = [0.0, 1.0]") +
+        element("cam", "it", "a = 'foot'; cam = 'cam'; gap = 0.1; stiffness = 1e5; formula = \"" + formula + "\"")));
+    SimulationOptions options;
+    options.end = k_turn * turns;
+    return simulate(*system, system->initial_state(), options).final_state.t;
+  };
+  // The angle of the second wave grows with the square: its waves become narrower without end.
+  const std::string chirp = "'1 mm' * sin(value^2)";
+  CHECK(turned(chirp, 10.0) == doctest::Approx(10.0 * k_turn));
+  CHECK_THROWS_WITH_AS(static_cast<void>(turned(chirp, 2000.0)), doctest::Contains("does not repeat itself"), NumericalFailure);
+  CHECK(turned("'1 mm' * sin(value / 3)", 2000.0) == doctest::Approx(2000.0 * k_turn)); // every third turn is the same
 }

@@ -3,6 +3,8 @@
 //
 // With m δ̈ = −k δ − c δ̇, ω² = k/m, ζ = c/(2 m ω) = sin φ and ω_d = ω cos φ the force ends (π − 2φ)/ω_d after closing, with the
 // share e = exp(−ζ ω (π − 2φ)/ω_d) of the speed left, and the gap opens 2ζ/ω later.
+#include "mbd/trust/global_error.h"
+#include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>
@@ -166,5 +168,50 @@ TEST_CASE("what slides along a contact while it bounces loses friction times wha
         CHECK(bounce.event_times("floor", "opens").size() == 1);
         CHECK(std::abs(lost - mu * across) <= k_steps * tolerance * along + 1e-13);
       }
+  }
+}
+
+// Two masses of 1 and 2 kg between two walls with blows of 3 µs at 10 m from the origin: places are rounded to 1e-15 m, and with 1e12 N/m
+// accelerations to 1e-3 m/s². Steps of 0.3 µs then know speeds to 1e-10 m/s.
+namespace {
+
+std::string masses_between_walls() {
+  const auto contact = [](const std::string& name, const std::string& fields) {
+    return element("unilateral_contact", name, fields + "; stiffness = 1e12");
+  };
+  return k_no_gravity + body("x", "mass = 1.0; inertia = 1.0; position = [2.0, 0.0]") +
+         body("y", "mass = 2.0; inertia = 1.0; position = [5.0, 0.0]; velocity = [-1.0, 0.0]") + element("prismatic", "rail x", "a = 'x'") +
+         element("prismatic", "rail y", "a = 'y'") +
+         contact("left wall", "a = 'x'; b = { body = 'ground', at = [0.5, 0.0] }; normal = [1.0, 0.0]") +
+         contact("right wall", "a = 'y'; b = { body = 'ground', at = [9.5, 0.0] }; normal = [-1.0, 0.0]") +
+         contact("blow", "a = { body = 'y', point = [-0.5, 0.0] }; b = { body = 'x', point = [0.5, 0.0] }; normal = [1.0, 0.0]");
+}
+
+} // namespace
+
+TEST_CASE("stiff contacts at tolerances below rounding: steps no shorter than rounding allows, and a known error") {
+  const auto system = compile(scene(masses_between_walls()));
+  for (const std::string method : {"auto", "dop853", "tsit5", "rodas5p"}) {
+    CAPTURE(method);
+    const auto run_at = [&](double tolerance) {
+      SimulationOptions o = options({method, tolerance, 30.0});
+      o.has_extremes = true;
+      o.output_step = 1.0;
+      return std::pair(o, simulate(*system, system->initial_state(), o));
+    };
+    const long steps_at_floor = run_at(1e-12).second.statistics.steps;
+    CHECK(run_at(1e-9).second.statistics.rounded_tolerance == 0.0);
+    for (const double tolerance : {1e-11, 1e-12, 1e-13}) {
+      CAPTURE(tolerance);
+      const auto [o, run] = run_at(tolerance);
+      CHECK(run.statistics.steps < 3 * steps_at_floor);
+      const GlobalErrorEstimate estimate = estimate_global_error(*system, system->initial_state(), o, run);
+      CHECK(estimate.reason_unknown == "");
+      // Speeds are known to 1e-10 m/s, and blows pass that on without magnifying it: 3e-9 m in 30 s, which twelve blows add up.
+      CHECK(estimate.error.of(ErrorKind::position).value < 1e-6);
+    }
+    const RunStatistics finest = run_at(1e-14).second.statistics;
+    CHECK(finest.steps < 3 * steps_at_floor);
+    CHECK(finest.rounded_tolerance > 1e-13);
   }
 }
