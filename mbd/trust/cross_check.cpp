@@ -244,20 +244,23 @@ private:
     }
   }
 
-  // Returns the error, relative to the channel's scale, below which the bodies count as at rest. For velocities it is the position error at
-  // rest times the natural frequency of a body on the stiffest spring.
-  double error_of_rest(std::size_t i, ErrorKind kind, const std::string& where) {
-    const auto channel =
-        std::find_if(channels_.begin(), channels_.end(), [&](const ComparedChannel& c) { return c.channel->name == where; });
-    if (channel == channels_.end()) return 0.0;
+  // Returns the error below which the bodies count as at rest, m; for velocities, m/s, times the natural frequency of a body on the stiffest
+  // spring.
+  double error_of_rest(std::size_t i, ErrorKind kind) {
+    const double error = std::max(k_rest_share, k_rest_errors * methods_[i].tolerance) * size_of_bodies(system_);
+    if (kind != ErrorKind::velocity) return error;
     const Trajectory& t = *run_of(i).result.trajectory;
     const UnknownColumns columns = unknown_columns(t);
     double rate = 0.0; // 1/s
     for (std::size_t row = 0; row < t.size(); ++row)
       if (const double place = t.value(row, columns.place); place > 0.0) rate = std::max(rate, t.value(row, columns.rate) / place);
-    const double share = std::max(k_rest_share, k_rest_errors * methods_[i].tolerance);
-    const double error = share * size_of_bodies(system_) * (kind == ErrorKind::velocity ? rate : 1.0);
-    return error / (channel->arm * channel->wide_scale);
+    return error * rate;
+  }
+  // The same relative to the scale of a channel.
+  double error_of_rest(std::size_t i, ErrorKind kind, const std::string& where) {
+    const auto channel =
+        std::find_if(channels_.begin(), channels_.end(), [&](const ComparedChannel& c) { return c.channel->name == where; });
+    return channel == channels_.end() ? 0.0 : error_of_rest(i, kind) / (channel->arm * channel->wide_scale);
   }
 
   // --- comparisons of two runs
@@ -279,14 +282,19 @@ private:
       const std::size_t column = kind == ErrorKind::reaction ? columns.force : (kind == ErrorKind::velocity ? columns.rate : columns.place);
       return x.run().trajectory->value(row, column) + y.run().trajectory->value(row, column);
     };
+    // Two adaptive runs at rest may take the same steps, and their difference does not show what a step tolerates there.
+    const double rest[2] = {error_of_rest(i, ErrorKind::position) + error_of_rest(j, ErrorKind::position),
+                            error_of_rest(i, ErrorKind::velocity) + error_of_rest(j, ErrorKind::velocity)};
     Disagreement worst{DisagreementKind::channel, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const ComparedChannel& channel = channels_[c];
-      const double floor = (channel.kind == ErrorKind::reaction ? k_reaction_floor : k_floor) * channel.scale;
+      const bool is_reaction = channel.kind == ErrorKind::reaction;
+      const double floor = is_reaction ? k_reaction_floor * channel.scale
+                                       : k_floor * channel.scale + rest[channel.kind == ErrorKind::velocity ? 1 : 0] / channel.arm;
       // In a step in which friction reverses or a contact closes, time stepping has one force for two phases: the impulse is right, but the
       // force at an instant is not. Near events a reaction must therefore differ in k_persistent consecutive samples, if one method is time
       // stepping.
-      const bool may_be_brief = channel.kind == ErrorKind::reaction && (is_stepping(i) || is_stepping(j));
+      const bool may_be_brief = is_reaction && (is_stepping(i) || is_stepping(j));
       std::array<double, k_persistent> recent{};
       for (std::size_t row = 0; row < rows && x.run().trajectory->times()[row] <= until; ++row) {
         double& ratio = recent[row % k_persistent] = 0.0;
