@@ -119,7 +119,7 @@ public:
   void register_turns(TurnTable& turns) const override {
     for (const ElementData& entry : entries) turns.add_all({entry.a, entry.b});
   }
-  // For friction on a face of a, positions of b's corners in the axes of a are needed.
+  // Registers the relative positions that a run has to keep: friction on a face of a needs b's corners in the axes of a.
   void register_links(LinkTable& links) override {
     for (ElementData& entry : entries) {
       entry.link = links.add(entry.a, entry.b);

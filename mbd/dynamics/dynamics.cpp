@@ -259,8 +259,8 @@ void Dynamics::evaluate_stage(double t, const double* y, double* dy) {
 
 void Dynamics::evaluate_stage_without_code(double t, const double* y, double* dy) {
   rates(t, y, dy);
-  // A projection would start with the factors of this evaluation, which an evaluation by code does not have. They are discarded, so that
-  // results do not depend on the use of code.
+  // A projection would start with the factors of this evaluation, which an evaluation by machine code does not have. They are discarded, so
+  // that results do not depend on the use of machine code. Below k_traced_pivot no machine code is used.
   if (layout_->smallest_pivot() >= k_traced_pivot) rows_.forget_factors();
   count_stage(t, y, dy);
 }

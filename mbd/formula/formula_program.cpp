@@ -13,17 +13,16 @@ bool is_switch(FormulaOp op) {
   return op == FormulaOp::abs || op == FormulaOp::min || op == FormulaOp::max || op == FormulaOp::less || op == FormulaOp::less_or_equal;
 }
 
-// Refuses formulas that depend on time in other ways than by sums, comparisons, and products with terms without time. Step control cannot
-// bound the rate of change of such formulas, so that a run could step over a narrow pulse. It can for linear functions of time and for
-// signals.
-void require_plain_time(const std::vector<FormulaProgram::Step>& steps) {
-  std::vector<char> has_time;
+// Returns true if all steps are linear, between switches, in the inputs that vary: the time, and with `operands_vary` the operands as well.
+bool are_linear(const std::vector<FormulaProgram::Step>& steps, bool operands_vary) {
+  std::vector<char> varies; // per step
   for (const FormulaProgram::Step& step : steps) {
-    const auto in = [&](std::size_t k) { return step.of[k] >= 0 && has_time[static_cast<std::size_t>(step.of[k])] != 0; };
+    const auto in = [&](std::size_t k) { return step.of[k] >= 0 && varies[static_cast<std::size_t>(step.of[k])] != 0; };
     const bool is_any = in(0) || in(1) || in(2);
-    bool is_plain = true, stays = is_any;
+    bool is_linear = true, does_vary = is_any;
     switch (step.op) {
-    case FormulaOp::time: stays = true; break;
+    case FormulaOp::time: does_vary = true; break;
+    case FormulaOp::operand: does_vary = operands_vary; break;
     case FormulaOp::add:
     case FormulaOp::subtract:
     case FormulaOp::negate:
@@ -32,18 +31,26 @@ void require_plain_time(const std::vector<FormulaProgram::Step>& steps) {
     case FormulaOp::max:
     case FormulaOp::finite:
     case FormulaOp::choice: break;
-    case FormulaOp::multiply: is_plain = !(in(0) && in(1)); break;
-    case FormulaOp::divide: is_plain = !in(1); break;
+    case FormulaOp::multiply: is_linear = !(in(0) && in(1)); break;
+    case FormulaOp::divide: is_linear = !in(1); break;
     case FormulaOp::less:
-    case FormulaOp::less_or_equal: stays = false; break; // constant between switches
-    default: is_plain = !is_any; break;
+    case FormulaOp::less_or_equal: does_vary = false; break; // constant between switches
+    default: is_linear = !is_any; break;
     }
-    if (!is_plain)
-      throw std::invalid_argument(
-          "has the time in a function, a power, a divisor or a product with itself, and no step can know how fast that changes: make it a "
-          "[[signal]] and name that, or a [[state]]");
-    has_time.push_back(stays ? 1 : 0);
+    if (!is_linear) return false;
+    varies.push_back(does_vary ? 1 : 0);
   }
+  return true;
+}
+
+// Refuses formulas that depend on time in other ways than by sums, comparisons, and products with terms without time. Step control cannot
+// bound the rate of change of such formulas, so that a run could step over a narrow pulse. It can for linear functions of time and for
+// signals.
+void require_plain_time(const std::vector<FormulaProgram::Step>& steps) {
+  if (!are_linear(steps, false))
+    throw std::invalid_argument(
+        "has the time in a function, a power, a divisor or a product with itself, and no step can know how fast that changes: make it a "
+        "[[signal]] and name that, or a [[state]]");
 }
 
 } // namespace
@@ -56,34 +63,7 @@ FormulaProgram::FormulaProgram(const FormulaTree& tree) {
   set_guards();
 }
 
-bool FormulaProgram::is_linear() const {
-  std::vector<char> varies;
-  for (const Step& step : steps_) {
-    const auto in = [&](std::size_t k) { return step.of[k] >= 0 && varies[static_cast<std::size_t>(step.of[k])] != 0; };
-    const bool is_any = in(0) || in(1) || in(2);
-    bool is_plain = true, does_vary = is_any;
-    switch (step.op) {
-    case FormulaOp::operand:
-    case FormulaOp::time: does_vary = true; break;
-    case FormulaOp::add:
-    case FormulaOp::subtract:
-    case FormulaOp::negate:
-    case FormulaOp::abs:
-    case FormulaOp::min:
-    case FormulaOp::max:
-    case FormulaOp::finite:
-    case FormulaOp::choice: break;
-    case FormulaOp::multiply: is_plain = !(in(0) && in(1)); break;
-    case FormulaOp::divide: is_plain = !in(1); break;
-    case FormulaOp::less:
-    case FormulaOp::less_or_equal: does_vary = false; break; // constant between switches
-    default: is_plain = !is_any; break;
-    }
-    if (!is_plain) return false;
-    varies.push_back(does_vary ? 1 : 0);
-  }
-  return true;
-}
+bool FormulaProgram::is_linear() const { return are_linear(steps_, true); }
 
 bool FormulaProgram::may_peak() const {
   int switches = 0;

@@ -90,7 +90,8 @@ private:
     return rows;
   }
 
-  // Returns the rigid motion with angular velocity `rate` about a foot that joints to other bodies permit; nothing if they permit none.
+  // Returns the rigid motion (velocity of the origin, angular velocity `rate`) in which the part turns about a foot, or slides on it across
+  // `normal` as far as joints to other bodies require; nothing if joints permit none.
   [[nodiscard]] std::optional<Vec3> motion_about(const Foot& pivot, const Vec2& normal, const MatX& rows, double rate) const {
     if (rows.rows() == 0) return turn_about(pivot.point, rate);
     const Vec3 row = rows.row(0).transpose();

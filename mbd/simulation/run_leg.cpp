@@ -413,8 +413,9 @@ bool RunLeg::advance() {
   return !is_over() && !is_interrupted_;
 }
 
-// Ends the step early if the condition of an armed action becomes true inside it, or if a formula leaves its band (FormulaPeakSearch). Returns
-// true if the step is withdrawn for this purpose.
+// Looks inside the step for an instant at which the condition of an armed action holds, or a formula leaves the band between two values
+// (FormulaPeakSearch). Returns true if the step was undone, to be repeated up to that instant, or if its dense output is too inaccurate to
+// tell.
 bool RunLeg::ends_at_peak() {
   if (!integrator_->dense_output_is_accurate(dynamics_)) return true;
   const double place = formula_search_->place_of_peak(*integrator_, dynamics_, actions_ ? &actions_->is_armed : nullptr);

@@ -83,7 +83,7 @@ SampleStore::SampleStore(const SamplingOptions& options, const std::vector<Drive
   try {
     store_ = std::make_unique<study::Store>(options.store, identity, study::StoreMode::run);
   } catch (const study::StoreError& error) {
-    if (error.helps().empty()) throw; // restarting does not help if another process uses the file, or if it is not writable
+    if (error.usable_modes().empty()) throw; // restarting does not help if another process uses the file, or if it is not writable
     store_ = std::make_unique<study::Store>(options.store, identity, study::StoreMode::restart);
   }
 }

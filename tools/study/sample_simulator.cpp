@@ -233,7 +233,7 @@ struct SampleSimulator::SharedRunData {
   std::map<std::string, RequestedExtremes> extremes; ///< required extremes by channel name
   std::size_t races = 0;
   std::vector<std::string> sampled; ///< name patterns of channels whose output samples are needed
-  Sampling sampling;                ///< output times for measured records
+  Sampling sampling;                ///< times at which output is needed, to be compared with measured records
   std::vector<Setting> settings;
   std::vector<double> numbers; ///< values to which the settings are set
   std::unique_ptr<Variants> variants;

@@ -21,15 +21,15 @@ enum class StoreMode { run, changed, restart };
 /// Thrown if the store cannot be used, with reason and remedy. Exit code 2.
 class StoreError : public FileError {
 public:
-  /// `helps` lists the modes with which the store could be used.
-  StoreError(std::string path, const std::string& message, std::vector<StoreMode> helps = {})
-      : FileError(std::move(path), message), helps_(std::move(helps)) {}
+  /// `usable_modes` lists the modes with which the store could be used.
+  StoreError(std::string path, const std::string& message, std::vector<StoreMode> usable_modes = {})
+      : FileError(std::move(path), message), usable_modes_(std::move(usable_modes)) {}
 
   /// Returns the modes with which the store could be used.
-  [[nodiscard]] const std::vector<StoreMode>& helps() const { return helps_; }
+  [[nodiscard]] const std::vector<StoreMode>& usable_modes() const { return usable_modes_; }
 
 private:
-  std::vector<StoreMode> helps_;
+  std::vector<StoreMode> usable_modes_;
 };
 
 /// Identity of a study in a store.

@@ -48,7 +48,7 @@ bool is_database(const std::string& file) {
 // Converts a store error to a message that lists the options with which the store could be used.
 FileError with_options(const StoreError& error) {
   std::string options;
-  for (const StoreMode mode : error.helps()) options += mode == StoreMode::changed ? "--changed, " : "--restart, ";
+  for (const StoreMode mode : error.usable_modes()) options += mode == StoreMode::changed ? "--changed, " : "--restart, ";
   return {error.path(), options.empty() ? error.what() : error.what() + (" (steplap study run: " + options + "-o)"), error.line()};
 }
 
