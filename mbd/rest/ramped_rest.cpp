@@ -14,6 +14,7 @@ namespace {
 
 constexpr double k_shortest = 1.0 / 4096; // share of the load within which changes of modes are located
 constexpr double k_jump = 1e-2;           // share of the largest force; a larger change in the shortest increment is a jump
+constexpr double k_drop = 1e-3;           // share of the static capacity; less is rounding
 constexpr double k_rounding = 1e-9;       // share of the ramp
 constexpr double k_none = std::numeric_limits<double>::infinity();
 constexpr int k_most_increments = 2000;
@@ -63,7 +64,14 @@ private:
   void note_jump(const RampedRest& rest, double end) const {
     const bool has_jumped = !is_near(now_, rest);
     for (const int f : rest.slid)
-      if (has_jumped || !slides_on(rest, f)) questions_.on_jump(f, end);
+      if (!slides_on(rest, f) || (has_jumped && releases_force(rest, f))) questions_.on_jump(f, end);
+  }
+
+  // Returns true if friction that slides carries less than it could while sticking. Only then does sliding set free energy: without a drop,
+  // friction that slides through a play under a slowly growing load arrives without velocity, although the displacement changes forces.
+  [[nodiscard]] static bool releases_force(const RampedRest& rest, int f) {
+    return std::any_of(rest.margins.begin(), rest.margins.end(),
+                       [f](const FrictionMargin& margin) { return margin.friction == f && margin.used < 1.0 - k_drop; });
   }
 
   [[nodiscard]] static bool slides_on(const RampedRest& rest, int f) {
@@ -126,14 +134,15 @@ private:
 
 } // namespace
 
-double largest_difference(const std::vector<std::vector<double>>& x, const std::vector<std::vector<double>>& y, double small) {
+double largest_difference(const std::vector<ForcesOfUnit>& x, const std::vector<ForcesOfUnit>& y, double small) {
   double most = 0.0;
   for (std::size_t unit = 0; unit < x.size(); ++unit) {
     double largest = 0.0;
-    for (const double force : y[unit]) largest = std::max(largest, std::abs(force));
-    for (std::size_t i = 0; i < x[unit].size(); ++i) {
-      const double a = x[unit][i], b = y[unit][i];
-      if (a == b || (std::isnan(a) && std::isnan(b))) continue;
+    for (const double force : y[unit].values) largest = std::max(largest, std::abs(force));
+    const double rounding = std::max(x[unit].rounding, y[unit].rounding);
+    for (std::size_t i = 0; i < x[unit].values.size(); ++i) {
+      const double a = x[unit].values[i], b = y[unit].values[i];
+      if (std::abs(a - b) <= rounding || (std::isnan(a) && std::isnan(b))) continue;
       const double share = std::abs(a - b) / std::max(std::abs(b), small * largest);
       if (!(share <= most)) most = std::isnan(share) ? std::numeric_limits<double>::infinity() : share;
     }

@@ -40,10 +40,16 @@ struct GravityRamp {
   double first = 1.0; ///< share of the ramp: length of the first increment that is tried, and of that after each change of modes
 };
 
+/// Forces of one unit.
+struct ForcesOfUnit {
+  std::vector<double> values;
+  double rounding = 0.0; ///< smaller differences have no meaning
+};
+
 /// Requests for each equilibrium on the path.
 struct RampQuestions {
   /// Returns the forces by which increments are compared; each list has its own unit.
-  std::function<std::vector<std::vector<double>>(const RampedRest& rest)> forces;
+  std::function<std::vector<ForcesOfUnit>(const RampedRest& rest)> forces;
   /// Called for each equilibrium of the path, from the start to the last one; `share` of the ramp lies before it. While modes stay,
   /// utilisation of friction is convex in the load, so its largest values are among these.
   std::function<void(const RampedRest& rest, double share)> on_rest;
@@ -58,7 +64,7 @@ struct RampQuestions {
 
 /// Returns the largest difference of forces, as a share of themselves, or, if they are less than `small` of the largest one of their unit, of
 /// that. Infinite if only one of two has a value.
-[[nodiscard]] double largest_difference(const std::vector<std::vector<double>>& x, const std::vector<std::vector<double>>& y, double small);
+[[nodiscard]] double largest_difference(const std::vector<ForcesOfUnit>& x, const std::vector<ForcesOfUnit>& y, double small);
 
 /// Returns the equilibrium under the gravity of `system` in which all friction sticks as in `start`; nothing if friction slides, or if that is
 /// not known. As long as nothing has slid, it is that of any ramp, found at once. Throws NumericalFailure if the machine leaves its place with

@@ -125,7 +125,11 @@ TEST_CASE("a kind of study is a file pair and a line in kinds.cpp") {
   const auto sources = product_sources();
   // What else is called so, and who reads a kind's settings besides the kind itself.
   const std::map<std::string, Reasons> besides = {
-      {"sample", {{"tools/study/store.cpp", "a table of the store"}, {"tools/study/program/show.cpp", "the head of a column"}}},
+      {"sample",
+       {{"tools/study/store.cpp", "a table of the store"},
+        {"tools/study/program/show.cpp", "the head of a column"},
+        {"tools/study/influence.cpp", "a word of a sentence"},
+        {"tools/study/kriging.cpp", "a word of a sentence"}}},
       {"sweep", {{"tools/study/program/show.cpp", "its samples are its answer"}}},
       {"reliability",
        {{"tools/study/limit_function.h", "hands its settings to the methods of reliability"},

@@ -115,6 +115,8 @@ void add_laws(SceneWriter& w, RandomNumber own, const std::string& body) {
 
 // Scenes behind this seed have a belt, a band, a cam, a one-way clutch, a gear with losses or a part of a beam as well.
 constexpr std::uint64_t k_last_without_transmissions = 12000;
+// Scenes behind this seed have a bearing with friction and a pad that creeps as well.
+constexpr std::uint64_t k_last_without_bearings = 18000;
 // Scenes behind this seed have actions as well.
 constexpr std::uint64_t k_last_without_actions = 9000;
 
@@ -216,6 +218,29 @@ void add_wheels(SceneWriter& w, RandomNumber own) {
   if (!is_rolling || own.chance(0.3)) skate(w, own);
 }
 
+// A rotor that coasts in a bearing with friction, and a pad that creeps between the ground and the body `end`.
+void add_bearing(SceneWriter& w, RandomNumber own, const std::string& end) {
+  const At place{-20.0 * w.size, 0.0};
+  const double m = w.mass * own.between(0.5, 2.0), radius = 0.5 * w.size, k = w.stiffness_for(m, 4.0, 20.0), c = w.damping_for(m, k);
+  const double spin = own.between(2.0, 10.0) / w.duration;
+  const std::string rotor = w.body(m, 0.5 * m * radius * radius, place, {{"angular_velocity", number(own.chance(0.5) ? spin : -spin)}});
+  w.element("bearing",
+            {{"a", quoted(rotor)},
+             {"b", marker("ground", place)},
+             {"stiffness", number(k)},
+             {"damping", number(c)},
+             {"radius", number(0.1 * radius)},
+             {"static_friction", number(own.between(0.05, 0.3))}},
+            {rotor});
+  const double creeping = w.stiffness_for(w.mass, 0.5, 4.0);
+  w.element("maxwell",
+            {{"a", quoted(end)},
+             {"b", marker("ground", {3.0 * w.size, 3.0 * w.size})},
+             {"stiffness", number(creeping)},
+             {"damping", number(creeping * w.duration * own.between(0.1, 2.0))}},
+            {end});
+}
+
 void add_cell(SceneWriter& w, const std::vector<NamedCell>& cells, At place, std::vector<std::string>& ends) {
   const NamedCell& cell = w.r.one_of(cells);
   w.scene.cells.insert(cell.name);
@@ -242,6 +267,7 @@ Scene random_scene(std::uint64_t seed) {
   if (seed > k_last_without_actions && !ends.empty()) add_actions(w, RandomNumber(~seed * 11), ends.front());
   if (seed > k_last_without_wheels && seed <= k_last_without_actions) add_wheels(w, RandomNumber(~seed * 7));
   if (seed > k_last_without_transmissions) add_transmission(w, RandomNumber(~seed * 13));
+  if (seed > k_last_without_bearings && !ends.empty()) add_bearing(w, RandomNumber(~seed * 17), ends.front());
   return w.scene;
 }
 

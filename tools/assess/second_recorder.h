@@ -14,7 +14,7 @@ namespace steplap::assess {
 struct Assessment;
 struct AssessmentOptions;
 
-/// What one of two recorders says of the voyage.
+/// Results of the assessment by the records of one recorder alone.
 struct RecorderFindings {
   std::vector<std::string> files;
   std::string covered;            ///< sentence about the time that its records cover

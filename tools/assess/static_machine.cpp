@@ -4,6 +4,7 @@
 #include "mbd/model/entries.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/start.h"
+#include "mbd/rest/tangent.h"
 #include "mbd/run/failure.h"
 #include "mbd/run/prominence.h"
 #include "mbd/run/rest_values.h"
@@ -24,6 +25,8 @@ constexpr double k_beyond = -1e-3;
 
 constexpr double k_first_increments[] = {1.0 / 16.0, 1.0 / 23.0}; // of the two divisions of a path; their halves do not coincide
 constexpr double k_small_force = 0.1;                             // of the largest force; smaller ones count as this one
+
+constexpr double k_rounding = 1e-6; // of the largest force: forces at an equilibrium are known to this; couples times the size of the model
 
 constexpr double k_near = 1e-3;    // of a pull: friction that has k_reserve left does not slide within it
 constexpr double k_reserve = 1e-2; // of its capacity
@@ -89,13 +92,22 @@ StaticMachine::StaticMachine(const LoadedModel& loaded)
   at_rest_.left = reserves_of(at_rest_);
 }
 
-std::vector<std::vector<double>> StaticMachine::forces_in(const std::vector<double>& values) const {
-  std::map<std::string, std::vector<double>> forces; // by unit
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (is_reaction(system_->channels[i])) forces[system_->channels[i].unit].push_back(values[i]);
-  std::vector<std::vector<double>> lists;
-  for (auto& [unit, list] : forces) lists.push_back(std::move(list));
-  return lists;
+std::vector<ForcesOfUnit> StaticMachine::forces_in(const std::vector<double>& values) const {
+  std::map<std::string, ForcesOfUnit> groups; // by unit
+  double largest = 0.0;                       // N, here and without pull
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Channel& channel = system_->channels[i];
+    if (!is_reaction(channel)) continue;
+    groups[channel.unit].values.push_back(values[i]);
+    if (channel.unit == "N") largest = std::max({largest, std::abs(values[i]), std::abs(at_rest_.values[i])}); // not NaN
+  }
+  const double length = scale_of(*system_, at_rest_.rest->state).length;
+  std::vector<ForcesOfUnit> forces;
+  for (auto& [unit, group] : groups) {
+    group.rounding = unit == "N" ? k_rounding * largest : unit == "N m" ? k_rounding * largest * length : 0.0;
+    forces.push_back(std::move(group));
+  }
+  return forces;
 }
 
 void StaticMachine::find_watches() {

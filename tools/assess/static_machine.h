@@ -101,8 +101,8 @@ private:
   [[nodiscard]] Probe in_two_divisions(const std::function<Probe(double first_increment)>& path) const;
   [[nodiscard]] Probe still(const Vec2& pull);
   [[nodiscard]] bool has_reserve(const Probe& probe) const;
-  /// Returns the reactions among the values of channels, in a list for each unit.
-  [[nodiscard]] std::vector<std::vector<double>> forces_in(const std::vector<double>& values) const;
+  /// Returns the reactions among the values of channels, in a group for each unit.
+  [[nodiscard]] std::vector<ForcesOfUnit> forces_in(const std::vector<double>& values) const;
   [[nodiscard]] double value_in(const std::vector<double>& values, const std::string& channel) const;
   [[nodiscard]] std::vector<double> reserves_of(const Probe& probe) const;
 

@@ -1,4 +1,4 @@
-// What another distribution of one variable would make of the probability of failure, from the samples that were drawn for it.
+// Probability of failure for another distribution of one variable, by reweighting the samples that were drawn for it.
 //
 // Samples with weights w for the present density f have the weights w f'/f for another density f'. The mean over all samples of those that
 // fail is the probability for f' (R. Y. Rubinstein, D. P. Kroese, Simulation and the Monte Carlo Method, section on importance sampling).

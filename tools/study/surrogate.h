@@ -10,7 +10,7 @@
 
 namespace steplap::study {
 
-/// What a surrogate says of one point.
+/// Prediction of a surrogate at one point.
 struct Prediction {
   double mean = 0.0, deviation = 0.0;
   /// Returns how many standard deviations lie between the mean and zero: the learning function U of B. Echard, N. Gayton, M. Lemaire, AK-MCS:

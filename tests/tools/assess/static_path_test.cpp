@@ -133,8 +133,10 @@ TEST_CASE("stops in a box that a chain holds on one side") {
 // Forces of one unit are compared with each other only: 1 N differs by half of 2 N, but by a tenth of a tenth of 100 N.
 TEST_CASE("the difference between forces of two paths") {
   const double nan = std::nan("");
-  CHECK(largest_difference({{1.0}, {100.0}}, {{2.0}, {100.0}}, 0.1) == doctest::Approx(0.5));
-  CHECK(largest_difference({{1.0, 100.0}}, {{2.0, 100.0}}, 0.1) == doctest::Approx(0.1));
-  CHECK(largest_difference({{0.0, nan}}, {{0.0, nan}}, 0.1) == 0.0);
-  CHECK(std::isinf(largest_difference({{nan}}, {{1.0}}, 0.1)));
+  using Groups = std::vector<ForcesOfUnit>;
+  CHECK(largest_difference(Groups{{{1.0}}, {{100.0}}}, Groups{{{2.0}}, {{100.0}}}, 0.1) == doctest::Approx(0.5));
+  CHECK(largest_difference(Groups{{{1.0, 100.0}}}, Groups{{{2.0, 100.0}}}, 0.1) == doctest::Approx(0.1));
+  CHECK(largest_difference(Groups{{{0.0, nan}}}, Groups{{{0.0, nan}}}, 0.1) == 0.0);
+  CHECK(std::isinf(largest_difference(Groups{{{nan}}}, Groups{{{1.0}}}, 0.1)));
+  CHECK(largest_difference(Groups{{{1e-9}, 1e-6}}, Groups{{{-2e-9}, 1e-6}}, 0.1) == 0.0); // both are rounding
 }

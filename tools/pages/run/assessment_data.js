@@ -71,7 +71,7 @@ steplap.assessment = (() => {
   const margin = (j) => (j.margin > 1000 ? 'over\u00a01000' : one(j.margin, '', j.slips ? {} : { error: j.error, limit: 1 }));
   const marginText = (m) => (m.weakest ? margin(m.weakest) : '–');
   const slidText = (value) => one(value, 'm', { rounding: 1e-9 });
-  // What one of two recorders says, in a line.
+  // The results by one of two recorders, in a line.
   const recorderText = (r) => [outcomes[r.decision] || r.decision, `${r.events} events`,
     ...['x', 'y', 'z'].filter((axis) => isKnown(r.greatest[axis])).map((axis) => `${axis} up to ${inG(r.greatest[axis])}`),
     ...(isKnown(r.least_margin) ? [`least margin ${one(r.least_margin, '')}`] : [])]
