@@ -219,7 +219,8 @@ void Integrator::note_rounding() {
 }
 
 void Integrator::update_weights(Dynamics& dynamics) {
-  if (settings_.tolerance < 1e-11) rate_rounding_.note_step(dynamics, t0_, y0_.data(), k0_, length_scale_, scratch_.data());
+  if (settings_.tolerance < RateRounding::k_least_tolerance)
+    rate_rounding_.note_step(dynamics, t0_, y0_.data(), k0_, length_scale_, scratch_.data());
   const Layout& layout = dynamics.layout();
   const int m = dynamics.coordinate_count();
   const double tolerance = settings_.tolerance;
