@@ -130,6 +130,18 @@ TEST_CASE("stops in a box that a chain holds on one side") {
   CHECK(ray.limits.back().acceleration == doctest::Approx(0.3 * k_g).epsilon(1e-5));
 }
 
+// The feet slide through a play of 2 mm before a stop holds the active part: under a slowly growing pull it arrives there without velocity. At 1 g
+// upwards nothing has weight, and at 1 g downwards all couples are zero by symmetry: their rounding is no difference between two paths.
+TEST_CASE("a play on the path is no jump, and forces that are zero do not differ") {
+  const auto model = load_model(STEPLAP_MODELS "/layouts/three_limb.toml");
+  StaticProofOptions options;
+  options.directions = 0;
+  for (const Vec2& pull : {Vec2(k_g, 0.0), Vec2(0.0, k_g), Vec2(0.0, -k_g)}) {
+    const StaticProof proof = prove_statically(*model, one_load(pull), options);
+    CHECK_MESSAGE(proof.verdict == Verdict::hold, proof.reason);
+  }
+}
+
 // Forces of one unit are compared with each other only: 1 N differs by half of 2 N, but by a tenth of a tenth of 100 N.
 TEST_CASE("the difference between forces of two paths") {
   const double nan = std::nan("");
