@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string_view>
 #include <system_error>
@@ -14,6 +15,8 @@
 namespace steplap {
 
 namespace {
+
+constexpr double k_missing = std::numeric_limits<double>::quiet_NaN(); // coordinate that the file has not given yet
 
 // Units of $INSUNITS, by its number.
 const std::map<int, std::string>& units_of_dxf() {
@@ -34,9 +37,17 @@ struct Group {
   int line = 0; ///< of the value
 };
 
+enum class EntityKind { light_polyline, polyline, other };
+
+EntityKind kind_of(std::string_view type) {
+  if (type == "LWPOLYLINE") return EntityKind::light_polyline;
+  return type == "POLYLINE" ? EntityKind::polyline : EntityKind::other;
+}
+
 // A polyline or another entity on some layer.
 struct Entity {
-  std::string type, layer;
+  EntityKind kind = EntityKind::other;
+  std::string type, layer; ///< `type` as the file names it, for messages
   std::vector<Vec2> corners;
   bool is_closed = false, has_arc = false, is_in_space = false, is_on_paper = false;
   int line = 0;
@@ -83,11 +94,17 @@ private:
     return true;
   }
   [[nodiscard]] double number() const {
-    double value = 0.0;
+    const double value = parsed<double>("a number");
+    if (!std::isfinite(value)) fail_at(group_.line, "has '" + shown(group_.value.substr(0, 30)) + "' where a number is expected");
+    return value;
+  }
+  [[nodiscard]] int integer() const { return parsed<int>("a whole number"); }
+  template <class T> [[nodiscard]] T parsed(const char* wanted) const {
+    T value{};
     const std::string_view text = group_.value.starts_with('+') ? group_.value.substr(1) : group_.value;
     const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-      fail_at(group_.line, "has '" + shown(group_.value.substr(0, 30)) + "' where a number is expected");
+    if (status != std::errc() || end != text.data() + text.size())
+      fail_at(group_.line, "has '" + shown(group_.value.substr(0, 30)) + "' where " + wanted + " is expected");
     return value;
   }
 
@@ -95,7 +112,7 @@ private:
     bool is_unit = false;
     while (next() && !(group_.code == 0 && group_.value == "ENDSEC")) {
       if (group_.code == 9) is_unit = group_.value == "$INSUNITS";
-      else if (is_unit && group_.code == 70) units_ = static_cast<int>(number());
+      else if (is_unit && group_.code == 70) units_ = integer();
     }
   }
   // The vertices of a POLYLINE are entities that follow it, up to a SEQEND.
@@ -106,30 +123,31 @@ private:
       if (group_.code == 0) {
         const std::string type(group_.value);
         is_vertex_ = has_vertices && type == "VERTEX";
-        if (is_vertex_) entities_.back().corners.emplace_back(Vec2::Zero());
-        else if (!(has_vertices && type == "SEQEND")) entities_.push_back({type, "", {}, false, false, false, false, group_.line});
-        has_vertices = type == "POLYLINE" || is_vertex_;
-      } else if (!entities_.empty() &&
-                 (is_vertex_ || group_.code == 8 || group_.code == 67 || entities_.back().type.ends_with("POLYLINE"))) {
+        if (is_vertex_) entities_.back().corners.emplace_back(k_missing, k_missing);
+        else if (!(has_vertices && type == "SEQEND"))
+          entities_.push_back({kind_of(type), type, "", {}, false, false, false, false, group_.line});
+        has_vertices = is_vertex_ || kind_of(type) == EntityKind::polyline;
+      } else if (!entities_.empty()) {
         read_group(entities_.back());
       }
     }
   }
   void read_group(Entity& entity) {
-    const bool is_light = entity.type == "LWPOLYLINE";
+    if (entity.kind == EntityKind::other && group_.code != 8 && group_.code != 67) return;
+    const bool is_light = entity.kind == EntityKind::light_polyline;
     switch (group_.code) {
     case 8:
       if (!is_vertex_) entity.layer = group_.value;
       break;
     case 10:
-      if (is_light) entity.corners.emplace_back(number(), 0.0);
+      if (is_light) entity.corners.emplace_back(number(), k_missing);
       else if (is_vertex_) entity.corners.back().x() = number();
       break;
     case 20:
       if (!entity.corners.empty() && (is_light || is_vertex_)) entity.corners.back().y() = number();
       break;
     case 42: entity.has_arc = entity.has_arc || number() != 0.0; break;
-    case 67: entity.is_on_paper = number() != 0.0; break;
+    case 67: entity.is_on_paper = integer() != 0; break;
     case 70: read_flags(entity); break;
     case 230: entity.is_in_space = entity.is_in_space || number() != 1.0; break; // seen from below, or oblique
     default: break;
@@ -137,13 +155,13 @@ private:
   }
   void read_flags(Entity& entity) {
     constexpr int k_closed = 1, k_space_and_meshes = 8 | 16 | 64, k_curve_and_spline = 2 | 4, k_vertex_of_curve = 1 | 8 | 16;
-    const int flags = static_cast<int>(number());
+    const int flags = integer();
     if (is_vertex_) {
       entity.has_arc = entity.has_arc || (flags & k_vertex_of_curve) != 0;
       return;
     }
     entity.is_closed = (flags & k_closed) != 0;
-    if (entity.type == "LWPOLYLINE") return;
+    if (entity.kind == EntityKind::light_polyline) return;
     entity.is_in_space = entity.is_in_space || (flags & k_space_and_meshes) != 0;
     entity.has_arc = entity.has_arc || (flags & k_curve_and_spline) != 0;
   }
@@ -177,8 +195,7 @@ const Entity& only_polyline(const DxfReader& drawing, const std::string& layer, 
     layers.push_back(entity.layer);
     if (entity.layer != layer) continue;
     const std::string subject = "has a " + shown(entity.type) + " on layer '" + layer + "'";
-    if (!entity.type.ends_with("POLYLINE"))
-      drawing.fail_at(entity.line, subject + ": an outline is one closed polyline, alone on its layer");
+    if (entity.kind == EntityKind::other) drawing.fail_at(entity.line, subject + ": an outline is one closed polyline, alone on its layer");
     if (found)
       drawing.fail_at(entity.line, subject + ", after another in line " + std::to_string(found->line) + ": give each its own layer");
     found = &entity;
@@ -205,7 +222,11 @@ std::vector<Vec2> parse_dxf_outline(const std::string& text, const std::string& 
   if (corners.size() < 3)
     drawing.fail_at(polyline.line, "has a " + polyline.type + " of " + counted(corners.size(), "corner", "corners") + " on layer '" +
                                        layer + "': an outline has three or more");
-  for (Vec2& corner : corners) corner *= metres;
+  for (Vec2& corner : corners) {
+    if (!corner.allFinite())
+      drawing.fail_at(polyline.line, "has a " + polyline.type + " on layer '" + layer + "' with a corner that lacks a coordinate");
+    corner *= metres;
+  }
   return corners;
 }
 

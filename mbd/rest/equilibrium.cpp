@@ -6,7 +6,6 @@
 #include "mbd/rest/admissible_rest.h"
 #include "mbd/rest/indifference.h"
 #include "mbd/rest/ramped_rest.h"
-#include "mbd/rest/rest_increment.h"
 #include "mbd/rest/settling.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
@@ -94,9 +93,11 @@ public:
     if (system_.body_count() <= 1) return at_rest();
     try {
       return search();
+    } catch (const SlidingFailure& none) {
+      return settled(none, &none);
     } catch (const ElementFailure& none) {
       if (system_.units.empty() && system_.frictions.empty()) throw;
-      return settled(none);
+      return settled(none, nullptr);
     }
   }
 
@@ -322,8 +323,9 @@ private:
     if (!result_.left.empty()) leave_place(result_.left.front());
   }
 
-  // Releases the machine with strong damping and repeats the search from its final pose. `none`: failure of the first search.
-  Equilibrium settled(const ElementFailure& none) {
+  // Releases the machine with strong damping and repeats the search from its final pose. `none`: failure of the first search;
+  // `slid`: the same, if friction gave way.
+  Equilibrium settled(const ElementFailure& none, const SlidingFailure* slid) {
     state_ = start_;
     std::fill(state_.v.begin(), state_.v.end(), 0.0);
     start_drives(system_, state_);
@@ -338,8 +340,7 @@ private:
     rest.bases = held_bases(rest);
     state_ = rest;
     // A body that slid away did not stand, even if it came to rest somewhere.
-    if (const auto* const slid = dynamic_cast<const SlidingFailure*>(&none);
-        slid && std::abs(row_value(slid->friction()) - slid->from()) > k_stands * length_)
+    if (slid && std::abs(row_value(slid->friction()) - slid->from()) > k_stands * length_)
       throw ElementFailure(none.what(), none.elements());
     result_ = {};
     slips_.clear();

@@ -1,7 +1,6 @@
 #include "mbd/rest/ramped_rest.h"
 
 #include "mbd/base/stop.h"
-#include "mbd/rest/rest_increment.h"
 
 #include <algorithm>
 #include <cmath>

@@ -66,6 +66,12 @@ struct RampQuestions {
 /// that. Infinite if only one of two has a value.
 [[nodiscard]] double largest_difference(const std::vector<ForcesOfUnit>& x, const std::vector<ForcesOfUnit>& y, double small);
 
+/// Returns the equilibrium near `before`, an equilibrium under slightly different loads. Friction sticks at its place in `before` while its
+/// bound allows; else it slides, at the bound for the normal forces of the new equilibrium. `sliding` lists what slides at the end, `slid`
+/// also what slid on the way. `may_creep`: if no set of sliding friction is consistent, follows the machine as it creeps, which costs some
+/// hundred times more. Throws NumericalFailure if there is no equilibrium near by, RestNotFound if that is not known.
+[[nodiscard]] RampedRest rest_after_increment(const System& system, const RampedRest& before, bool may_creep);
+
 /// Returns the equilibrium under the gravity of `system` in which all friction sticks as in `start`; nothing if friction slides, or if that is
 /// not known. As long as nothing has slid, it is that of any ramp, found at once. Throws NumericalFailure if the machine leaves its place with
 /// all friction sticking.

@@ -110,6 +110,11 @@ TEST_CASE("drawings that are no outline are refused, with one error and the line
   CHECK(has(read(""), "m.toml:7:1"));
   CHECK(has(read(text.substr(0, text.find("  0\nSECTION\n  2\nENTITIES"))), "no section ENTITIES"));
   CHECK(has(read(replaced(text, "5.0E3", "wide")), "'wide' where a number is expected"));
+  CHECK(has(read(replaced(text, "$INSUNITS\n 70\n4\n", "$INSUNITS\n 70\n1e300\n")), "'1e300' where a whole number is expected"));
+  const std::string begin = "0\nSECTION\n2\nENTITIES\n0\nLWPOLYLINE\n8\nTANK\n70\n1\n10\n0\n20\n0\n10\n1\n20\n0\n10\n1\n",
+                    end = "0\nENDSEC\n0\nEOF\n", unit = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n4\n0\nENDSEC\n";
+  CHECK(read(unit + begin + "20\n1\n" + end) == "");
+  CHECK(has(read(unit + begin + end), "a corner that lacks a coordinate"));
   CHECK(has(refusal([] {
               return parse_model(model_text("layer = \"TANK\"\n", "outline = [[0, 0], [1, 0], [0, 1]]\n"), "m.toml", transformer_catalog());
             }),
