@@ -282,15 +282,16 @@ private:
       const std::size_t column = kind == ErrorKind::reaction ? columns.force : (kind == ErrorKind::velocity ? columns.rate : columns.place);
       return x.run().trajectory->value(row, column) + y.run().trajectory->value(row, column);
     };
-    // Two adaptive runs at rest may take the same steps, and their difference does not show what a step tolerates there.
+    // Two runs of a machine at rest take the same steps. Their difference, the estimated error, is then zero and does not show what a step
+    // tolerates there.
     const double rest[2] = {error_of_rest(i, ErrorKind::position) + error_of_rest(j, ErrorKind::position),
                             error_of_rest(i, ErrorKind::velocity) + error_of_rest(j, ErrorKind::velocity)};
     Disagreement worst{DisagreementKind::channel, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const ComparedChannel& channel = channels_[c];
       const bool is_reaction = channel.kind == ErrorKind::reaction;
-      const double floor = is_reaction ? k_reaction_floor * channel.scale
-                                       : k_floor * channel.scale + rest[channel.kind == ErrorKind::velocity ? 1 : 0] / channel.arm;
+      const double floor = (is_reaction ? k_reaction_floor : k_floor) * channel.scale;
+      const double at_rest = is_reaction ? 0.0 : rest[channel.kind == ErrorKind::velocity ? 1 : 0] / channel.arm;
       // In a step in which friction reverses or a contact closes, time stepping has one force for two phases: the impulse is right, but the
       // force at an instant is not. Near events a reaction must therefore differ in k_persistent consecutive samples, if one method is time
       // stepping.
@@ -301,7 +302,10 @@ private:
         if (is_share(channel, *x.run().trajectory, row) || is_share(channel, *y.run().trajectory, row)) continue;
         const double distance =
             distance_at(channel, *x.run().trajectory, *y.run().trajectory, row, k_margin * (x.slack(row) + y.slack(row)));
-        const double allowed = k_margin * (x.estimate(c, row) + y.estimate(c, row)) + floor + unknown(channel.kind, row) / channel.arm;
+        const double errors[2] = {x.estimate(c, row), y.estimate(c, row)};
+        const bool is_blind = errors[0] == 0.0 || errors[1] == 0.0;
+        const double allowed =
+            k_margin * (errors[0] + errors[1]) + floor + (is_blind ? at_rest : 0.0) + unknown(channel.kind, row) / channel.arm;
         ratio = distance > 0.0 ? distance / allowed : 0.0;
         const bool is_near_event = x.slack(row) > 2.0 * x.step() || y.slack(row) > 2.0 * y.step();
         const double lasting = may_be_brief && is_near_event ? *std::min_element(recent.begin(), recent.end()) : ratio;

@@ -9,8 +9,20 @@ namespace steplap {
 
 namespace {
 
+// Throws for an option that concerns records: a static proof has none, and would ignore it.
+void refuse_record_options(const AssessOptions& o) {
+  const std::pair<const char*, bool> all[] = {{"--second", !o.second_records.empty()}, {"--voyage", o.voyage.has_value()},
+                                              {"--shipment", o.shipment.has_value()},  {"--accept", !o.accepted.empty()},
+                                              {"--criteria", o.criteria.has_value()},  {"--samples", o.samples.has_value()},
+                                              {"--seed", o.seed.has_value()},          {"--budget", o.budget.has_value()},
+                                              {"--pulse", o.pulse.has_value()},        {"--pulse-axis", o.pulse_axis.has_value()}};
+  for (const auto& [name, is_given] : all)
+    if (is_given) throw UsageError(std::string(name) + " is of no use with --static, which reads no record: leave it out");
+}
+
 ExitCode assess_here(const AssessOptions& options, Console& console) {
   if (!options.static_preset) throw UsageError("assessments are made by the program of studies: begin with 'steplap assess'");
+  refuse_record_options(options);
   StaticProofArguments arguments;
   arguments.models = options.records; // with --static the positional arguments are models, not records
   arguments.models.insert(arguments.models.end(), options.models.begin(), options.models.end());

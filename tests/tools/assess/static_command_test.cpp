@@ -86,6 +86,9 @@ TEST_CASE("what is wrong is said once, with place and remedy") {
   refused({"--static", "road", k_paper}, 2, "say which one the models show, with --plane");
   refused({"--static", "road", "--plane", "sideways", k_paper}, 2, "give lengthwise or transverse");
   refused({"--static", "iec-1g", "--directions", "7.5", k_paper}, 2, "whole number");
+  for (const std::string option :
+       {"--second", "--voyage", "--shipment", "--accept", "--criteria", "--samples", "--seed", "--budget", "--pulse"})
+    refused({"--static", "iec-1g", "--directions", "0", option, "1", k_paper}, 2, option + " is of no use with --static");
   refused({"--static", "iec-1g", "--directions", "-1", k_paper}, 2, "from 0 to 3600");
   refused({"--static", "iec-1g", "--largest", "nan", k_paper}, 2, "from 0.001 to");
   refused({"--static", (folder.path / "none.toml").string(), k_paper}, 3, "none.toml");

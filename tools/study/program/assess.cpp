@@ -264,6 +264,8 @@ ExitCode run_assessment(const AssessOptions& o, Console& console) {
   AssessmentOptions options = assessment_options(o);
   if (o.records.empty()) throw UsageError("name a recorder's file: steplap assess RECORD --model MODEL");
   if (o.models.empty()) throw UsageError("name a model of the machine with --model");
+  if (o.plane || o.directions || o.largest)
+    throw UsageError("--plane, --directions and --largest are of use with --static alone: leave them out");
   const std::string file = (output_folder(o) / "assessment.json").string();
   if (!o.is_overwriting && fs::exists(file))
     throw UsageError("'" + file + "' exists. Choose another folder with -o, or give --force to overwrite it.");
