@@ -134,7 +134,7 @@ DesignPoint point_of(LimitFunction& limit, const SearchEnd& end, bool is_origin_
   const double distance = length_of(point.u.data(), n);
   point.beta = is_origin_failing ? -distance : distance;
   for (const double x : point.u) point.alpha.push_back(distance > 0.0 ? -x / point.beta : 0.0);
-  point.breitung = point.hohenbichler = point.tvedt = std::nan("");
+  point.breitung = std::nan("");
   point.g = end.g;
   point.off_surface = std::numeric_limits<double>::infinity();
   const auto gradient = gradient_at(limit, point.u, limit.settings().difference);
@@ -159,13 +159,7 @@ void add_second_order(LimitFunction& limit, const OT::OptimizationAlgorithm& sea
     std::copy(point.u.begin(), point.u.end(), start.begin());
     OT::SORM sorm(search, event_of(limit, h), start);
     sorm.run();
-    const OT::SORMResult result = sorm.getResult();
-    point.breitung = result.getEventProbabilityBreitung();
-    try {
-      point.hohenbichler = result.getEventProbabilityHohenbichler();
-      point.tvedt = result.getEventProbabilityTvedt();
-    } catch (const OT::Exception&) { // the curvatures are outside the domain of these formulas
-    }
+    point.breitung = sorm.getResult().getEventProbabilityBreitung();
   } catch (const OT::Exception&) {
   } catch (const BadSample&) {}
 }

@@ -14,9 +14,8 @@ struct DesignPoint {
   double off_surface = 0.0;  ///< |g| / |∇g|: distance to the surface in standard deviations
   double misalignment = 0.0; ///< 1 − cosine of the angle between u and the gradient; zero at a point of minimum distance
   std::vector<double> alpha; ///< −u/beta: squares are the importance factors
-  double breitung = 0.0, hohenbichler = 0.0,
-         tvedt = 0.0;    ///< second-order probabilities; NaN if not requested or not applicable
-  bool is_found = false; ///< true if u is on the surface and a point of minimum distance
+  double breitung = 0.0;     ///< second-order probability by Breitung's formula; NaN if not requested or not applicable
+  bool is_found = false;     ///< true if u is on the surface and a point of minimum distance
 };
 
 /// Results of the search for design points.

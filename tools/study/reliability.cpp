@@ -16,7 +16,7 @@ FieldTable reliability_fields() {
   using S = ReliabilitySettings;
   FieldTable t;
   t.add("methods", &S::methods)
-      .doc("monte_carlo, form, sorm, importance_sampling, directional, subset, kriging; the first that samples gives the answer");
+      .doc("monte_carlo, form, sorm, importance_sampling, subset, kriging; the first that samples gives the answer");
   t.add("limit_states", &S::limit_states).doc("those that make the system; all if none is named");
   t.add("combination", &S::combination).one_of({"any", "all"}).doc("the system fails where any of them does, or where all do");
   t.add("cov", &S::cov).positive().at_most(1).doc("sampling stops at this coefficient of variation of the probability");
@@ -37,7 +37,7 @@ FieldTable reliability_fields() {
   return t;
 }
 
-const std::vector<std::string> k_methods{"monte_carlo", "form", "sorm", "importance_sampling", "directional", "subset", "kriging"};
+const std::vector<std::string> k_methods{"monte_carlo", "form", "sorm", "importance_sampling", "subset", "kriging"};
 
 constexpr double k_alarm = 0.01; // probability of a false alarm over all comparisons of a study
 
@@ -71,7 +71,6 @@ public:
     for (const std::string& method : settings_.methods) {
       run_.evaluator.expect(0);
       if (method == "monte_carlo") estimates_.push_back(monte_carlo(limit_, target_));
-      if (method == "directional") estimates_.push_back(directional(limit_, target_));
       if (method == "subset") estimates_.push_back(subset_simulation(limit_, target_));
       if (method == "importance_sampling") sample_around(target_);
       if (method == "kriging") learn();
@@ -147,7 +146,7 @@ private:
   // Returns the number of comparisons between estimates. The confidence level of each comparison is raised by it, so that only one study in
   // a hundred reports a contradiction by chance (Bonferroni correction).
   [[nodiscard]] long comparisons() const {
-    const auto theories = (asks("form") || asks("sorm") ? 1 : 0) + (asks("sorm") ? 3 : 0);
+    const auto theories = (asks("form") || asks("sorm") ? 1 : 0) + (asks("sorm") ? 1 : 0);
     const auto samplings = std::max<long>(1, std::count_if(settings_.methods.begin(), settings_.methods.end(),
                                                            [](const std::string& method) { return method != "form" && method != "sorm"; }));
     // comparisons of two sampling methods count twice, because both bounds are compared
@@ -210,23 +209,15 @@ private:
   }
 
   void report_sorm(const DesignPoint& first) {
-    const std::pair<const char*, double> all[] = {{"probability (Breitung)", first.breitung},
-                                                  {"probability (Hohenbichler)", first.hohenbichler},
-                                                  {"probability (Tvedt)", first.tvedt}};
-    for (const auto& [quantity, p] : all) {
-      std::string status = doubt(first);
-      const bool is_known = p > 0.0 && p < 1.0;
-      if (status.empty())
-        status = is_known ? sampling_doubt(p, "second order") : "the curvatures at the design point are too large for it, or unknown";
-      add("sorm", quantity, is_known ? p : std::nan(""), status);
-      if (is_known) report_factors("sorm", "factor" + std::string(quantity).substr(std::string("probability").size()), p);
-      if (is_known)
-        add("sorm",
-            quantity == std::string("probability (Breitung)") ? "beta (Breitung)"
-            : quantity == std::string("probability (Tvedt)")  ? "beta (Tvedt)"
-                                                              : "beta (Hohenbichler)",
-            -normal_quantile(p), status);
-    }
+    const double p = first.breitung;
+    const bool is_known = p > 0.0 && p < 1.0;
+    std::string status = doubt(first);
+    if (status.empty())
+      status = is_known ? sampling_doubt(p, "second order") : "the curvatures at the design point are too large for it, or unknown";
+    add("sorm", "probability (Breitung)", is_known ? p : std::nan(""), status);
+    if (!is_known) return;
+    report_factors("sorm", "factor (Breitung)", p);
+    add("sorm", "beta (Breitung)", -normal_quantile(p), status);
   }
 
   void report_points() {

@@ -1,6 +1,4 @@
-// Estimates probabilities by sampling: Monte Carlo, importance sampling at design points, directional simulation, subset simulation and
-// kriging.
-// Each returns a confidence interval and a status.
+// Estimates probabilities by sampling: Monte Carlo, importance sampling at design points, subset simulation and kriging. Each returns a confidence interval and a status.
 #pragma once
 
 #include "tools/study/design_points.h"
@@ -51,9 +49,6 @@ struct SamplingTarget {
 /// sampling restarts with the point found. If survival is less probable than failure around the design points, the probability of survival
 /// is estimated instead.
 [[nodiscard]] Estimate importance_sampling(LimitFunction& limit, DesignPoints& design, const SamplingTarget& target);
-/// Directional simulation: samples along rays in random directions, with one random point in each stratum of the distance. The estimate is
-/// unbiased for any shape of the failure region. Works in two stages, like importance_sampling().
-[[nodiscard]] Estimate directional(LimitFunction& limit, const SamplingTarget& target);
 /// Subset simulation: nested levels, each with a given fraction of the previous one's probability. Repeats the whole simulation
 /// `repetitions` times; their scatter gives the interval. Failures are counted directly if equal values prevent a further level.
 [[nodiscard]] Estimate subset_simulation(LimitFunction& limit, const SamplingTarget& target);

@@ -20,7 +20,7 @@ std::string reliability(const std::string& method, const std::string& expression
 }
 
 const std::string k_mu = "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\n";
-const char* const k_methods[] = {"monte_carlo", "form", "importance_sampling", "directional", "subset"};
+const char* const k_methods[] = {"monte_carlo", "form", "importance_sampling", "subset"};
 
 // Whatever is said of the probability, its interval must hold the true one, if it has any.
 void check_intervals(const StudyBench& bench, double truth) {

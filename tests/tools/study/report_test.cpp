@@ -171,7 +171,7 @@ TEST_CASE("findings of every kind have a part to play") {
                                  text("kind = \"critical\"\n[critical]\nvariable = \"a\"\nexpression = \"r - 2\"\n", range),
                                  text("kind = \"map\"\n[map]\nvariables = [\"a\", \"b\"]\nexpression = \"r - 2\"\nstep = 0.2\n", range),
                                  text("kind = \"reliability\"\n[reliability]\nmethods = [\"form\", \"sorm\", \"importance_sampling\", "
-                                      "\"directional\", \"subset\", \"monte_carlo\", \"kriging\"]\nsamples = 2000\nsubset_samples = 500\n",
+                                      "\"subset\", \"monte_carlo\", \"kriging\"]\nsamples = 2000\nsubset_samples = 500\n",
                                       normal) +
                                      "[[limit_state]]\nname = \"g\"\nexpression = \"4 - r\"\n"};
   for (const std::string& one : studies) {
