@@ -24,7 +24,7 @@ def missing(short, complete_names, what):
 
 def unknown(short, pattern, complete_names, what):
     """Names in the first column of tables that are none of the program's."""
-    first = {name for row in re.findall(r"^\| *(`.*?) \|", short, flags=re.M) for name in named(row)}
+    first = {name for row in re.findall(r"^(?:\| *)?(`.*?) \|", short, flags=re.M) for name in named(row)}
     strange = sorted(name for name in first if re.fullmatch(pattern, name) and name not in complete_names)
     return [f"docs/reference/{what} names what there is not: {', '.join(strange)}"] if strange else []
 
@@ -87,4 +87,5 @@ def used_anchors(root, name):
 if __name__ == "__main__":
     assert named("a `b` c `d`") == {"b", "d"} and missing("`a`", ["a", "b"], "x") and not missing("`a`", ["a"], "x")
     assert unknown("| `a`, `c` | b |\n", "[a-z]+", ["a"], "x") and not unknown("| `a` | `c` |\n", "[a-z]+", ["a"], "x")
+    assert unknown("`a`, `c` | b\n", "[a-z]+", ["a"], "x") and not unknown("`a` | `c`\n", "[a-z]+", ["a"], "x")
     main()
