@@ -149,7 +149,7 @@ Passing random_passing(const std::string& kind, RandomNumber& own) {
   passing.end = k_turn * own.decades(0.0, 2.0) / std::abs(arm.rate);
   passing.end = std::max(passing.end, 1.05 * passing.first);
   // Rounding of a position is some 1e-15 of the arm; divided by the slope it is an error of the angle. An inextensible rope is caught
-  // 2e-11 of its length beyond its end (docs/explanation/theory.md).
+  // 1e-11 of its length beyond its end (docs/explanation/theory.md).
   const double caught = kind == "inextensible rope" ? 1e-10 * arm.r : 0.0;
   passing.off = (1e-9 + (1e-13 * arm.r + caught) / slope) / std::abs(arm.rate);
   return passing;
