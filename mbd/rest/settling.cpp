@@ -25,6 +25,9 @@ constexpr double k_on_rows = 1e-12; // m, rad
 // Limits of the number of steps, and of that number times the square of the number of rows and coordinates.
 constexpr int k_most_steps = 4000, k_most_steps_near = 400, k_least_steps = 100;
 constexpr double k_most_work = 4e8;
+// A step that time stepping divides into more parts counts as failed. All steps together may take so many times their number of parts.
+constexpr long k_most_parts_of_step = 200;
+constexpr double k_most_parts_per_step = 10.0;
 
 class Settler {
 public:
@@ -50,7 +53,9 @@ public:
     }
     double h = std::sqrt(k_first * scene_.length / reference_), longest = h;
     clearance_.measure(state_.q);
-    for (; found.steps < std::min(most, 1.0 * (reach_ ? k_most_steps_near : k_most_steps)) && h > k_shortest * longest; ++found.steps) {
+    const double most_steps = std::min(most, 1.0 * (reach_ ? k_most_steps_near : k_most_steps));
+    const auto is_left = [&] { return found.steps < most_steps && static_cast<double>(parts_) < most_steps * k_most_parts_per_step; };
+    for (; is_left() && h > k_shortest * longest; ++found.steps) {
       throw_if_stopped("while the machine settled");
       State next = state_;
       if (!can_step(next, h)) {
@@ -80,8 +85,15 @@ private:
   [[nodiscard]] bool can_step(State& next, double h) {
     const double t = state_.t;
     next.t = t - h;
+    const long last_part = parts_ + k_most_parts_of_step;
+    const auto count_part = [&](const State&, const State&) {
+      throw_if_stopped("while the machine settled");
+      if (++parts_ > last_part) throw NumericalFailure("a step has too many parts");
+    };
     try {
-      stepping_.step(dynamics_, next, t, k_on_rows);
+      stepping_.step(dynamics_, next, t, k_on_rows, count_part);
+    } catch (const RunStopped&) {
+      throw;
     } catch (const NumericalFailure&) {
       return false;
     }
@@ -148,6 +160,7 @@ private:
   const std::optional<double> reach_; ///< of the whole displacement, in sizes of the model and rad
   Clearance clearance_;
   double reference_ = 0.0;
+  long parts_ = 0; ///< of all steps
 };
 
 } // namespace

@@ -3,9 +3,15 @@
 #include "transformer/program.h"
 
 #include <doctest/doctest.h>
+#include <toml++/toml.h>
 
+#include <cctype>
+#include <cstdlib>
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -57,7 +63,84 @@ bool is_refused(const std::string& model, const std::string& setting) {
   return false;
 }
 
+// A number, or a text that holds one: "50 MN/m", "= 2 * r".
+bool is_numeric(const toml::node& node) {
+  if (node.is_integer() || node.is_floating_point()) return true;
+  const toml::value<std::string>* text = node.as_string();
+  return text && !text->get().empty() && (std::isdigit(text->get()[0]) || std::string("+-.=").find(text->get()[0]) != std::string::npos);
+}
+
+struct NumberInModel {
+  std::string key; ///< path without names and indices, but with the kinds
+  std::function<void(double)> set;
+};
+
+// Appends each numeric value below `node`, at any depth. The references remain valid while values are set, not when `node` is copied.
+void append_numbers(toml::node& node, const std::string& key, std::vector<NumberInModel>& numbers) {
+  const auto append = [&](toml::node& child, const std::string& below, const std::function<void(double)>& set) {
+    if (is_numeric(child)) {
+      numbers.push_back({below, set});
+    } else {
+      append_numbers(child, below, numbers);
+    }
+  };
+  if (toml::table* table = node.as_table()) {
+    const std::string kind = (*table)["kind"].value_or(std::string());
+    for (auto&& [name, child] : *table)
+      append(child, key + "/" + kind + "." + std::string(name.str()),
+             [table, field = std::string(name.str())](double number) { table->insert_or_assign(field, number); });
+  } else if (toml::array* array = node.as_array()) {
+    for (std::size_t i = 0; i < array->size(); ++i)
+      append((*array)[i], key, [array, i](double number) { array->replace(array->cbegin() + static_cast<std::ptrdiff_t>(i), number); });
+  }
+}
+
+std::vector<NumberInModel> numbers_of(toml::table& model) {
+  std::vector<NumberInModel> numbers;
+  append_numbers(model, "", numbers);
+  return numbers;
+}
+
+bool is_refused_text(const toml::table& model, const std::string& path) {
+  std::stringstream text;
+  text << model;
+  try {
+    (void)load_model_text(text.str(), path, {});
+  } catch (const ModelError&) {
+    return true;
+  }
+  return false;
+}
+
 } // namespace
+
+// STEPLAP_HOSTILE_NUMBERS=all sets each value of each model, in minutes; otherwise each field of each kind once.
+TEST_CASE("no number of any model ends the program, and NaN is always refused") {
+  const char* const wanted = std::getenv("STEPLAP_HOSTILE_NUMBERS"); // more than a test has time for
+  const bool sets_all = wanted && std::string(wanted) == "all";
+  std::set<std::string> done;
+  for (const auto& entry : fs::recursive_directory_iterator(STEPLAP_SOURCE "/models")) {
+    if (entry.path().extension() != ".toml") continue;
+    const std::string path = entry.path().string();
+    CAPTURE(path);
+    const toml::table original = toml::parse_file(path);
+    if (is_refused_text(original, path)) continue; // a study, or a part that is no whole model
+    toml::table counted = original;
+    const std::vector<NumberInModel> numbers = numbers_of(counted);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (!done.insert(numbers[i].key).second && !sets_all) continue;
+      CAPTURE(numbers[i].key);
+      const auto is_refused_with = [&](double number) {
+        toml::table changed = original;
+        numbers_of(changed)[i].set(number);
+        return is_refused_text(changed, path);
+      };
+      for (const double number : {0.0, -1.0, 1e300}) (void)is_refused_with(number);
+      CHECK(is_refused_with(std::numeric_limits<double>::quiet_NaN()));
+    }
+  }
+  CHECK(done.size() > 200); // the fields that the shipped models give
+}
 
 TEST_CASE("no number in a table ends the program, and NaN is always refused") {
   const std::vector<fs::path> models = models_with_tables();
