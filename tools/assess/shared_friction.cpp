@@ -1,8 +1,6 @@
 #include "tools/assess/shared_friction.h"
 
 #include "elements/coulomb_stick.h"
-#include "elements/formula_force.h"
-#include "elements/load.h"
 #include "elements/prescribed_motion.h"
 #include "mbd/base/name_pattern.h"
 #include "mbd/base/shown_text.h"
@@ -57,9 +55,8 @@ std::set<std::string> bodies_of(const ElementEntry& entry, const std::map<std::s
 }
 
 // Returns true for loads and drives, which cannot hold a body.
-bool is_action_from_outside(const Element& element) {
-  return dynamic_cast<const Load*>(&element) || dynamic_cast<const FormulaForce*>(&element) ||
-         dynamic_cast<const PrescribedMotion*>(&element);
+bool is_action_from_outside(const ElementEntry& entry) {
+  return entry.kind->has_constant_load || dynamic_cast<const PrescribedMotion*>(entry.element.get());
 }
 
 // Returns the elements, other than `own`, that hold the load which rests on these frictions. The load consists of all bodies connected with
@@ -77,7 +74,7 @@ std::vector<std::string> holders_of(const DrivenModel& model, const Compiled& co
   for (const ElementEntry& entry : whole.elements) {
     const std::set<std::string> bodies = bodies_of(entry, body_of_marker);
     if (left_out.contains(entry.element->name)) pair.insert(bodies.begin(), bodies.end());
-    else if (!is_action_from_outside(*entry.element) && !bodies.empty()) edges.emplace_back(entry.element->name, bodies);
+    else if (!is_action_from_outside(entry) && !bodies.empty()) edges.emplace_back(entry.element->name, bodies);
   }
   std::set<std::string> load;
   for (const std::string& body : pair)

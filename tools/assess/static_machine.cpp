@@ -171,14 +171,8 @@ Probe StaticMachine::probe(const RampedRest& start, const Vec2& before, const Ve
     if (!probe.jump)
       probe.jump = Jump{system_->element_names[static_cast<std::size_t>(element)], Vec2(before + share * (pull - before)).norm()};
   };
-  try {
-    probe.rest = find_ramped_rest(*system_, start, {gravity_ + before, gravity_ + pull, first_increment}, questions);
-    probe.pull = pull;
-    probe.left = reserves_of(probe);
-    probe.is_still = probe.rest->slid.empty();
-  } catch (const RunStopped&) {
-    throw;
-  } catch (const NumericalFailure& failure) {
+  // Returns the probe of a failed search, with the last equilibrium on the path.
+  const auto ended_by = [&](const NumericalFailure& failure) {
     Probe none;
     if (probe.rest) {
       probe.left = reserves_of(probe);
@@ -187,8 +181,21 @@ Probe StaticMachine::probe(const RampedRest& start, const Vec2& before, const Ve
     }
     none.pull = pull;
     none.failure = failure.what();
-    none.is_unknown = dynamic_cast<const RestNotFound*>(&failure) != nullptr;
     return none;
+  };
+  try {
+    probe.rest = find_ramped_rest(*system_, start, {gravity_ + before, gravity_ + pull, first_increment}, questions);
+    probe.pull = pull;
+    probe.left = reserves_of(probe);
+    probe.is_still = probe.rest->slid.empty();
+  } catch (const RunStopped&) {
+    throw;
+  } catch (const RestNotFound& failure) {
+    Probe none = ended_by(failure);
+    none.is_unknown = true;
+    return none;
+  } catch (const NumericalFailure& failure) {
+    return ended_by(failure);
   }
   return probe;
 }

@@ -32,8 +32,15 @@ void TextTable::add_row(Row cells) {
   rows_.push_back(std::move(cells));
 }
 
+namespace {
+
+// Returns the stream's sink for tables; null if it shows text.
+TableSink* sink_of(std::ostream& stream) { return dynamic_cast<TableSink*>(&stream); }
+
+} // namespace
+
 std::ostream& operator<<(std::ostream& stream, const TextTable& table) {
-  if (auto* const sink = dynamic_cast<TableSink*>(&stream)) {
+  if (TableSink* const sink = sink_of(stream)) {
     sink->take(table);
     return stream;
   }
@@ -54,7 +61,7 @@ std::ostream& operator<<(std::ostream& stream, const TextTable& table) {
 }
 
 std::ostream& operator<<(std::ostream& stream, const About& about) {
-  if (auto* const sink = dynamic_cast<TableSink*>(&stream)) sink->begin(about);
+  if (TableSink* const sink = sink_of(stream)) sink->begin(about);
   return stream;
 }
 
