@@ -146,11 +146,10 @@ bool FormulaPeakSearch::set_band(MonitoredFormula& sought, Integrator& integrato
       sought.curves.read(evaluate_dense(theta, integrator, dynamics), operands_.data());
       quarter[i] = seen(theta, operands_);
       if (!std::isfinite(quarter[i])) return false;
-      low = std::min(low, quarter[i]);
-      high = std::max(high, quarter[i]);
     }
     const double cubic = (4.0 * (quarter[0] + quarter[1]) - first - last) / 6.0;
     is_shown = std::abs(middle - cubic) <= k_smooth * beyond_ends;
+    if (is_shown) low = std::min({low, quarter[0], quarter[1]}), high = std::max({high, quarter[0], quarter[1]});
   }
   if (is_shown) low = std::min(low, middle), high = std::max(high, middle);
   const double beyond = k_beyond * (high - low) + k_beyond_values * std::max(std::abs(low), std::abs(high));
