@@ -368,14 +368,19 @@ static std::optional<Finding> divided_steps(const LoadedModel& loaded, const Int
 }
 
 static std::optional<Finding> tolerance_below_rounding(const LoadedModel& loaded, double rounded) {
-  if (rounded == 0.0) return std::nullopt;
+  const double used = options_of(loaded.model).settings.tolerance, asked = loaded.model.simulation.tolerance.value_or(used);
+  const bool is_raised = asked < used && !has_fixed_step(loaded.model.simulation.integrator);
+  if (rounded == 0.0 && !is_raised) return std::nullopt;
   Finding finding;
   finding.code = "tolerance_below_rounding";
   finding.level = FindingLevel::note;
-  finding.text = "tolerance = " + number_text(options_of(loaded.model).settings.tolerance) +
-                 " lies below rounding: the forces of stiff elements are known no better than their stiffness times the rounding of "
-                 "places, and steps are controlled to " +
-                 rounded_text(rounded, 2) + " there. A smaller tolerance makes them no more accurate";
+  finding.text = "tolerance = " + number_text(asked) + " lies below rounding";
+  if (is_raised) finding.text += ", and is taken as " + number_text(used);
+  if (rounded > 0.0)
+    finding.text += ": the forces of stiff elements are known no better than their stiffness times the rounding of places, and steps are "
+                    "controlled to " +
+                    rounded_text(rounded, 2) + " there";
+  finding.text += ". A smaller tolerance makes a run no more accurate";
   return finding;
 }
 

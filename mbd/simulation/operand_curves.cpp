@@ -47,6 +47,20 @@ const Tables k_tables = [] {
   return t;
 }();
 
+OperandCurves::Coefficients chebyshev_of(const OperandCurves::Coefficients& values) {
+  OperandCurves::Coefficients chebyshev{};
+  for (int k = 0; k <= k_last; ++k)
+    for (int i = 0; i <= k_last; ++i) chebyshev[k] += k_tables.transform[k][i] * values[i];
+  return chebyshev;
+}
+
+OperandCurves::Coefficients powers_of(const OperandCurves::Coefficients& chebyshev) {
+  OperandCurves::Coefficients c{};
+  for (int k = 0; k <= k_last; ++k)
+    for (int p = 0; p <= k; ++p) c[p] += k_tables.powers[k][p] * chebyshev[k];
+  return c;
+}
+
 // Returns the sum of the omitted terms, if the coefficients continue to decrease as the last four do; even and odd coefficients are
 // combined in pairs.
 double left_out(const std::array<double, k_last + 1>& chebyshev) {
@@ -134,7 +148,7 @@ void OperandCurves::sample(int panel, const DenseEvaluation& evaluate_dense, con
 }
 
 void OperandCurves::fit(int panel, std::size_t leaf, int whole, double checked) {
-  std::array<double, k_nodes> value;
+  Coefficients value;
   Interval seen = interval::k_none;
   Curve curve;
   bool is_finite = true;
@@ -148,11 +162,8 @@ void OperandCurves::fit(int panel, std::size_t leaf, int whole, double checked) 
   const double width = seen.high - seen.low, spread = std::isfinite(width) ? width : 0.0;
   curve.hull = seen.is_empty() ? seen : Interval{seen.low - spread, seen.high + spread};
   if (is_finite) {
-    std::array<double, k_nodes> chebyshev{};
-    for (int k = 0; k < k_nodes; ++k)
-      for (int i = 0; i < k_nodes; ++i) chebyshev[k] += k_tables.transform[k][i] * value[i];
-    for (int k = 0; k < k_nodes; ++k)
-      for (int p = 0; p <= k; ++p) curve.c[p] += k_tables.powers[k][p] * chebyshev[k];
+    const Coefficients chebyshev = chebyshev_of(value);
+    curve.c = powers_of(chebyshev);
     const double off = std::abs(horner(curve.c, 2.0 * k_check - 1.0) - checked);
     curve.floor = k_floor * std::max(std::abs(seen.low), std::abs(seen.high));
     curve.error = std::max(left_out(chebyshev), k_safety * off) + curve.floor;
@@ -172,22 +183,30 @@ bool OperandCurves::can_improve(int panel, std::size_t leaf) const {
   return c.is_smooth ? c.error > 2.0 * c.floor : !(c.hull.radius() <= 2.0 * c.floor);
 }
 
-Enclosure<OperandCurves::k_degree> OperandCurves::over(int panel, std::size_t leaf, double begin, double end) const {
-  const Curve& curve = this->curve(panel, leaf);
-  if (!curve.is_smooth) return Enclosure<k_degree>::of_range(curve.hull, curve.lacks_values);
-  const Panel& p = this->panel(panel);
-  const double scale = 2.0 / (p.end - p.begin), middle = std::clamp(scale * (0.5 * (begin + end) - p.begin) - 1.0, -1.0, 1.0);
-  std::array<double, k_nodes> c = curve.c;
+double OperandCurves::node(int i) { return k_tables.node[i]; }
+
+OperandCurves::Coefficients OperandCurves::polynomial_through(const Coefficients& values) { return powers_of(chebyshev_of(values)); }
+
+Enclosure<OperandCurves::k_degree> OperandCurves::part_of(const Coefficients& polynomial, double middle, double half, double error) {
+  middle = std::clamp(middle, -1.0, 1.0);
+  Coefficients c = polynomial;
   for (int k = 0; k < k_degree; ++k) // shifts the polynomial to the middle of the interval, by repeated division
     for (int i = k_degree - 1; i >= k; --i) c[i] += middle * c[i + 1];
-  // The interval is widened by a few rounding errors, because its ends are rounded in s.
-  const double half = 0.5 * scale * (end - begin) + 4.0 * k_ulp;
+  half += 4.0 * k_ulp; // because the ends of the interval are rounded in s
   double power = 1.0;
   for (double& x : c) {
     x *= power;
     power *= half;
   }
-  return Enclosure<k_degree>::of_polynomial(c, curve.error + k_shift_rounding * size_of(curve.c));
+  return Enclosure<k_degree>::of_polynomial(c, error + k_shift_rounding * size_of(polynomial));
+}
+
+Enclosure<OperandCurves::k_degree> OperandCurves::over(int panel, std::size_t leaf, double begin, double end) const {
+  const Curve& curve = this->curve(panel, leaf);
+  if (!curve.is_smooth) return Enclosure<k_degree>::of_range(curve.hull, curve.lacks_values);
+  const Panel& p = this->panel(panel);
+  const double scale = 2.0 / (p.end - p.begin);
+  return part_of(curve.c, scale * (0.5 * (begin + end) - p.begin) - 1.0, 0.5 * scale * (end - begin), curve.error);
 }
 
 Enclosure<0> OperandCurves::at(int panel, std::size_t leaf, double theta) const {

@@ -19,16 +19,18 @@ namespace steplap {
 class OperandCurves {
 public:
   static constexpr int k_degree = k_enclosure_degree; ///< degree of the polynomials
+  static constexpr int k_nodes = k_degree + 1;
+  using Coefficients = std::array<double, k_nodes>; ///< of 1, s, s² …
 
   /// An operand over one panel; s goes from −1 to 1.
   struct Curve {
-    std::array<double, k_degree + 1> c{}; ///< coefficients of powers of s
-    double error = 0.0;                   ///< error bound of the polynomial
-    double floor = 0.0;                   ///< part of `error` due to rounding, which halving does not reduce
-    Interval hull;                        ///< enclosure of the curve by its samples, if it is not smooth
-    bool is_smooth = false;               ///< false: only `hull` is valid
-    bool lacks_values = false;            ///< some values are NaN
-    bool is_halving = true;               ///< halving the parent panel has reduced the error considerably
+    Coefficients c{};
+    double error = 0.0;        ///< error bound of the polynomial
+    double floor = 0.0;        ///< part of `error` due to rounding, which halving does not reduce
+    Interval hull;             ///< enclosure of the curve by its samples, if it is not smooth
+    bool is_smooth = false;    ///< false: only `hull` is valid
+    bool lacks_values = false; ///< some values are NaN
+    bool is_halving = true;    ///< halving the parent panel has reduced the error considerably
   };
   /// A part of the stretch.
   struct Panel {
@@ -65,13 +67,18 @@ public:
   /// Returns true if halving the panel would improve its bounds.
   [[nodiscard]] bool can_improve(int panel, std::size_t leaf) const;
 
-  /// Returns an enclosure of an operand over part of a panel; begin and end in s, from −1 to 1.
+  /// Returns an enclosure of an operand over part of a panel; begin and end in theta.
   [[nodiscard]] Enclosure<k_degree> over(int panel, std::size_t leaf, double begin, double end) const;
+  /// Returns node i of a panel, in s.
+  [[nodiscard]] static double node(int i);
+  /// Returns the polynomial with these values at the nodes.
+  [[nodiscard]] static Coefficients polynomial_through(const Coefficients& values);
+  /// Returns an enclosure of a polynomial in s over middle ± half. `error`: its error bound.
+  [[nodiscard]] static Enclosure<k_degree> part_of(const Coefficients& polynomial, double middle, double half, double error);
   /// Returns an enclosure of an operand at one point of a panel.
   [[nodiscard]] Enclosure<0> at(int panel, std::size_t leaf, double theta) const;
 
 private:
-  static constexpr int k_nodes = k_degree + 1;
   int add_panel(double begin, double end, int depth, int whole);
   void sample(int panel, const DenseEvaluation& evaluate_dense, const double* first, const double* last);
   void fit(int panel, std::size_t leaf, int whole, double checked);

@@ -3,6 +3,7 @@
 #include "mbd/simulation/action_follower.h"
 #include "mbd/simulation/leg_motion.h"
 
+#include <algorithm>
 #include <ctime>
 #include <utility>
 
@@ -20,7 +21,7 @@ SimulationOptions options_of(const Model& model) {
   options.end = s.end;
   options.integrator = s.integrator;
   options.settings.step = s.step.value_or(0.0);
-  options.settings.tolerance = s.tolerance.value_or(1e-8);
+  options.settings.tolerance = std::max(s.tolerance.value_or(1e-8), k_least_run_tolerance);
   options.settings.projection_tolerance = s.projection_tolerance;
   if (s.coordinates != "automatic") options.coordinates = s.coordinates == "joint" ? Coordinates::joint : Coordinates::absolute;
   options.output_step = model.output.step;

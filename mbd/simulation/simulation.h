@@ -16,6 +16,9 @@ class ActionFollower;
 class MotionNotes;
 class RunLeg;
 
+/// Smallest tolerance of a run. A smaller one in a model is taken as this: no finer run could tell how accurate the run is, because that needs
+/// a tenth of its tolerance, and rounding permits no less.
+inline constexpr double k_least_run_tolerance = 1e-13;
 /// Returns the options given in a model.
 [[nodiscard]] SimulationOptions options_of(const Model& model);
 

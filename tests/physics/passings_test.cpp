@@ -246,6 +246,7 @@ Passing random_meeting(RandomNumber& own) {
     const double a = start[0] + rate[0] * t, b = start[1] + rate[1] * t;
     return std::hypot(apart + std::cos(b) - std::cos(a), std::sin(b) - std::sin(a));
   };
+  if (distance(0.0) <= radius) return random_meeting(own); // they begin in touch
   Passing passing;
   passing.end = k_turn * own.decades(1.0, 2.0) / std::min(std::abs(rate[0]), std::abs(rate[1]));
   const double fastest = std::abs(rate[0]) + std::abs(rate[1]);
@@ -329,6 +330,7 @@ Passing random_bells(RandomNumber& own) {
 struct Field {
   std::string text, channel;
   double wanted = 0.0; ///< of the channel at the end
+  double peak = 0.0;   ///< what the peak adds to it
   double end = 0.0;    ///< s
 };
 
@@ -338,10 +340,13 @@ Field random_field(const std::string& kind, RandomNumber& own) {
   const bool is_state = kind == "state";
   const std::string strength = is_state ? "'" + digits(push) + " K/s'" : "'" + digits(push) + " N'", none = is_state ? "'0 K/s'" : "'0 N'";
   std::string formula;
-  double integral = 0.0; // of the formula over the way, parts of push · width
-  if (kind == "gaussian" || is_state) {
+  double integral = 0.0; // of the peak over the way, parts of push · width
+  double slope = 0.0;    // N/m
+  if (kind == "gaussian" || kind == "gaussian on a slope" || is_state) {
     formula = strength + " * exp(-" + ratio + "^2)";
     integral = std::sqrt(std::numbers::pi);
+    if (kind == "gaussian on a slope") slope = push * own.decades(-2.0, 0.5) / at;
+    if (slope > 0.0) formula += " + '" + digits(slope) + " N/m' * flier.x";
   } else if (kind == "lorentzian") {
     formula = strength + " / (1 + " + ratio + "^2)^2";
     integral = 0.5 * std::numbers::pi;
@@ -359,7 +364,8 @@ Field random_field(const std::string& kind, RandomNumber& own) {
   }
   Field field;
   field.end = own.between(1.5, 4.0) * (at + 10.0 * width) / v;
-  field.wanted = integral * push * width / v;
+  field.peak = integral * push * width / v;
+  field.wanted = field.peak + 0.5 * slope * v * field.end * field.end;
   field.text = k_no_gravity + body("flier", "mass = 1.0; inertia = 1.0; velocity = " + point(v, 0.0));
   if (is_state) {
     field.text += "[[state]]\nname = 'heat'\nunit = 'K'\nrate = \"" + formula + "\"\n";
@@ -371,7 +377,9 @@ Field random_field(const std::string& kind, RandomNumber& own) {
   return field;
 }
 
-// A thousandth: what a peak adds is found by the tolerance of 1e-8 of what moves, and of it a step that ends in it sees all.
+// A thousandth: what a peak adds is found by the tolerance of 1e-8 of what moves, and of it a step that ends in it sees all. On a slope the
+// tolerance is one of all that the force adds, of which ten times that is allowed, and the step that enters the peak is as accurate as its
+// estimate: tsit5 lost 1.8 % of one of 600 peaks.
 void check_fields(const std::string& kind, int count) {
   int missed = 0;
   for (int seed = 0; seed < count; ++seed) {
@@ -380,7 +388,8 @@ void check_fields(const std::string& kind, int count) {
     const Model model = scene(field.text + "[simulation]\nstep = 1e-3\n");
     for (const char* method : {"auto", "dop853", "tsit5", "rodas5p"}) {
       Run found = run(model, {method, 1e-8, field.end, 0.0});
-      if (std::abs(found.last(field.channel) - field.wanted) <= 1e-3 * field.wanted) continue;
+      const double allowed = field.wanted > field.peak ? 2e-2 * field.peak + 1e-7 * field.wanted : 1e-3 * field.peak;
+      if (std::abs(found.last(field.channel) - field.wanted) <= allowed) continue;
       ++missed;
       MESSAGE(kind << " " << seed << " " << std::string(method) << ": " << digits(found.last(field.channel)) << " for "
                    << digits(field.wanted) << ", end " << digits(field.end) << "\n" + field.text);
@@ -464,7 +473,8 @@ TEST_CASE("a gate of several comparisons is passed by no method unseen") {
 }
 
 TEST_CASE("a force or a rate by formula that acts for an instant acts") {
-  for (const char* kind : {"gaussian", "lorentzian", "state", "box", "triangle", "circle"}) check_fields(kind, cases());
+  for (const char* kind : {"gaussian", "gaussian on a slope", "lorentzian", "state", "box", "triangle", "circle"})
+    check_fields(kind, 2 * cases());
 }
 
 TEST_CASE("the knots of a lift by formula lie about its narrow lobes, and a harmonic has none") {

@@ -229,3 +229,23 @@ TEST_CASE("a model that asks for nothing is not open about anything") {
   CHECK(asked.judgement.caps.size() == 1);
   CHECK(asked.judgement.verdict == Verdict::open);
 }
+
+TEST_CASE("a tolerance so small that no finer run could tell its error is raised, and that is noted") {
+  const auto run = [](const std::string& tolerance, const std::string& integrator) {
+    return judged_run(load_model_text("[simulation]\nend = 1.0\nstep = 1e-3\ntolerance = " + tolerance + "\nintegrator = \"" + integrator +
+                                          "\"\n[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 0.1\nposition = [0.5, 0.0]\n"
+                                          "[[element]]\nkind = \"revolute\"\nname = \"pin\"\na = { body = \"b\", at = [0.0, 0.0] }\n",
+                                      "scene.toml"));
+  };
+  for (const char* const integrator : {"auto", "dop853", "tsit5", "rodas5p"}) {
+    CAPTURE(integrator);
+    const Report least = run("1e-14", integrator);
+    const Finding* const raised = found(least.findings, "tolerance_below_rounding");
+    REQUIRE(raised);
+    CHECK(raised->text.find("tolerance = 1e-14 lies below rounding, and is taken as 1e-13") != std::string::npos);
+    REQUIRE(least.estimate.errors);
+    CHECK(least.estimate.errors->reason_unknown == "");
+    CHECK_FALSE(found(run("1e-10", integrator).findings, "tolerance_below_rounding"));
+  }
+  CHECK_FALSE(found(run("1e-14", "rk4").findings, "tolerance_below_rounding")); // it has no use for a tolerance
+}
