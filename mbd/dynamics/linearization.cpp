@@ -64,7 +64,7 @@ void Linearization::put(std::vector<Triplet>& entries, int row, int column, doub
   if (column >= 3 * layout_->absolute_count || (*inverse_mass_)[column] > 0.0) entries.emplace_back(row, column, value);
 }
 
-void Linearization::evaluate(Dynamics& dynamics, double t, const double* y) {
+void Linearization::evaluate(Dynamics& dynamics, double t, const double* y, const PartsHook& change) {
   dynamics_ = &dynamics;
   layout_ = &dynamics.layout();
   n_ = dynamics.coordinate_count();
@@ -75,7 +75,12 @@ void Linearization::evaluate(Dynamics& dynamics, double t, const double* y) {
   acceleration_ = dynamics.cluster_accelerations(dy_.data());
   for (auto* entries : {&stiffness_, &damping_, &gradient_, &bias_q_, &bias_v_, &response_}) entries->clear();
   parts_.clear();
-  for (const auto& group : dynamics.system().groups) group->add_jacobian(dynamics.evaluation(), parts_);
+  first_part_.clear();
+  for (const auto& group : dynamics.system().groups) {
+    first_part_.push_back(parts_.size());
+    group->add_jacobian(dynamics.evaluation(), parts_);
+  }
+  if (change) change(dynamics.evaluation(), parts_, first_part_);
   for (const PairJacobian& part : parts_) add_forces(part);
   inner_parts_.clear();
   inner_.clear();

@@ -34,6 +34,8 @@
 
 #include <Eigen/SparseCore>
 
+#include <functional>
+
 namespace steplap {
 
 /// Matrices of the linearised equations of motion at one state.
@@ -43,7 +45,10 @@ public:
 
   /// Computes all matrices at time t and packed state y, for the modes set in `dynamics`. The entries always have the same order for one
   /// layout, so that a sparsity pattern can be used again.
-  void evaluate(Dynamics& dynamics, double t, const double* y);
+  void evaluate(Dynamics& dynamics, double t, const double* y) { evaluate(dynamics, t, y, {}); }
+  /// Called with the derivatives of all forces, group by group, and the index of the first of each group; may change them.
+  using PartsHook = std::function<void(const Evaluation& e, std::vector<PairJacobian>& parts, const std::vector<std::size_t>& first)>;
+  void evaluate(Dynamics& dynamics, double t, const double* y, const PartsHook& change);
 
   [[nodiscard]] int coordinates() const { return n_; } ///< number of coordinates n of the layout
   [[nodiscard]] int rows() const { return m_; }        ///< number of active constraint rows m
@@ -116,6 +121,7 @@ private:
   const std::vector<double>* inverse_mass_ = nullptr;
   std::vector<double> dy_;
   std::vector<PairJacobian> parts_;
+  std::vector<std::size_t> first_part_; ///< per group: index of its first entry in parts_
   std::vector<InnerJacobian> inner_parts_;
   std::vector<InnerBlock> inner_;
   StateJacobian state_jacobian_;

@@ -15,6 +15,7 @@ class Moreau final : public Integrator {
 public:
   Moreau(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
       : Integrator(dynamics, settings, max_dimension), stepping_(system_), k_(2 * max_dimension) {
+    stepping_.resolve_impacts();
     set_rate_storage(k_.data(), k_.data() + max_dimension);
   }
   [[nodiscard]] const char* name() const override { return "moreau"; }

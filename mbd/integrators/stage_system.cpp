@@ -15,6 +15,7 @@ void StageSystem::set(const Linearization& linearization, const Layout& layout) 
   right_.resize(n_ + m_);
   solution_.resize(n_ + m_);
   moved_.resize(n_);
+  position_shares_.reserve(static_cast<std::size_t>(n_));
   inner_.resize(linearization.inner().size());
   set_states();
 }
@@ -130,7 +131,7 @@ void StageSystem::solve_inner(const double* r, double* u) {
 template <class Put> void StageSystem::assemble(double g, const Put& put) const {
   const std::vector<double>& w = linearization_->inverse_mass();
   for (int i = 0; i < n_; ++i) put(i, i, 1.0);
-  for (const auto& e : linearization_->stiffness()) put(e.row(), e.col(), -g * g * w[e.row()] * e.value());
+  for (const auto& e : linearization_->stiffness()) put(e.row(), e.col(), -g * g * position_share(e.col()) * w[e.row()] * e.value());
   for (const auto& e : linearization_->damping()) put(e.row(), e.col(), -g * w[e.row()] * e.value());
   for (std::size_t b = 0; b < inner_.size(); ++b) {
     const int* const cluster = linearization_->inner()[b].cluster;
@@ -153,7 +154,7 @@ template <class Put> void StageSystem::assemble(double g, const Put& put) const 
     if (is_diagonal) put(e.col(), n_ + e.row(), is_redundant_[e.row()] ? 0.0 : -w[e.col()] * e.value());
   }
   for (const auto& e : linearization_->response()) put(e.row(), n_ + e.col(), is_redundant_[e.col()] ? 0.0 : -e.value());
-  for (const auto& e : linearization_->bias_by_pose()) put_row(e, -g * g * e.value());
+  for (const auto& e : linearization_->bias_by_pose()) put_row(e, -g * g * position_share(e.col()) * e.value());
   for (const auto& e : linearization_->bias_by_velocity()) put_row(e, -g * e.value());
   for (int r = 0; r < m_; ++r) put(n_ + r, n_ + r, is_redundant_[r] ? 1.0 : 0.0);
 }
@@ -190,7 +191,7 @@ void StageSystem::solve(const double* r, double* u) {
   solve_unknowns();
   for (int i = 0; i < n_; ++i) {
     u[n_ + i] = solution_[i];
-    u[i] = g_ * (r[i] + (w[i] > 0.0 ? solution_[i] : 0.0)); // a locked coordinate follows its prescribed rate
+    u[i] = g_ * (r[i] + (w[i] > 0.0 ? position_share(i) * solution_[i] : 0.0)); // a locked coordinate follows its prescribed rate
   }
   solve_inner(r, u);
   solve_states(r, u);
@@ -229,7 +230,7 @@ void StageSystem::finish_forces(const double* sum, double* u) {
   else sparse_.finish(sum, solution_.data());
   for (int i = 0; i < n_; ++i) {
     u[n_ + i] = w[i] > 0.0 ? solution_[i] : 0.0;
-    u[i] = g_ * u[n_ + i];
+    u[i] = g_ * position_share(i) * u[n_ + i];
   }
 }
 

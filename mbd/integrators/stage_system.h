@@ -45,6 +45,9 @@ class StageSystem {
 public:
   /// Sets the linearisation; factor() must follow. Redundant rows of `layout` are omitted.
   void set(const Linearization& linearization, const Layout& layout);
+  /// Sets for each coordinate the share s of its change of velocity that moves it: u_q = g (r_q + s u_v). Empty: 1 for all. Applies until the
+  /// next call; to be called after set(). Precondition: a share below 1 only without inner states.
+  void set_position_shares(const std::vector<double>& shares) { position_shares_ = shares; }
   /// Factorises for g = γh, s. Returns false if the matrix is singular.
   [[nodiscard]] bool factor(double g);
   /// Solves u = (1/g − ∂F/∂y)⁻¹ r; both consist of q, v (n each) and inner states.
@@ -76,7 +79,10 @@ private:
 
   static constexpr int k_max_dense = 48; ///< largest dense system; sparse factors are cheaper for more unknowns
   const Linearization* linearization_ = nullptr;
+  [[nodiscard]] double position_share(int i) const { return position_shares_.empty() ? 1.0 : position_shares_[i]; }
+
   std::vector<char> is_redundant_;
+  std::vector<double> position_shares_;
   int n_ = 0, m_ = 0;
   double g_ = 0.0;
   bool is_dense_ = true;

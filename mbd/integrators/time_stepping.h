@@ -22,14 +22,16 @@
 //
 // A step is accepted only if friction and normal forces have converged and contact modes agree with its end. Otherwise it is halved, down
 // to a millionth. (Example: the damper of a closing contact makes the force jump; if the step is long compared with m/c neither mode is
-// consistent.) A contact for which neither mode is consistent, and which would close late in the step, closes at its end instead. If halving
+// consistent.) As an integrator (moreau.cpp) it lets contacts rebound that close with a velocity: in an impact the mean force of a step is
+// that of energy (contact_impacts.h). A contact for which neither mode is consistent, and which would close late in the step, closes at its end instead. If halving
 // does not help the run stops.
 //
 // A friction element that sticks at the end of a step may have slipped within it, because means of loads and the clamping pressure at the
 // end do not show peaks. Such steps are halved, too (inner_slips.cpp). One that lands with a velocity along its row and sticks at the end
-// of that step has slipped in any case: its slip is reported, and the step is not halved for it.
+// of that step has slipped in any case: its slip is reported, and the step is not halved for it. Nor is it for one in an impact.
 #pragma once
 
+#include "mbd/integrators/contact_impacts.h"
 #include "mbd/integrators/row_compliance.h"
 
 #include <algorithm>
@@ -37,6 +39,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 
 namespace steplap {
 
@@ -59,6 +62,8 @@ public:
     held_time_ = t;
     keeps_sliding_ = keeps_sliding;
   }
+  /// Lets contacts rebound that close with a velocity (contact_impacts.h). Without this call their vibrations are damped as all others.
+  void resolve_impacts() { impacts_ = std::make_unique<ContactImpacts>(system_); }
   /// Returns the largest constraint residuals before projection in the last step.
   [[nodiscard]] const Residual& residual() const { return residual_; }
   /// Returns the number of parts added by halving, in all steps so far.
@@ -167,6 +172,7 @@ private:
   const System& system_;
   Linearization linearization_;
   StageSystem stages_;
+  std::unique_ptr<ContactImpacts> impacts_; ///< null: not resolved
   Residual residual_;
   State start_;
   std::vector<double> start_event_value_, start_event_derivative_; ///< event functions and their rates at the start of the present part

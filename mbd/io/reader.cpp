@@ -83,8 +83,8 @@ public:
   Reader(Document document, const Catalogue& catalogue)
       : document_(std::move(document)), catalogue_(catalogue), names_(top_level_names(catalogue)) {}
 
-  /// Returns the model as given and the completed model. If `text` is not null, it receives the text of the document.
-  std::pair<Model, Model> read(const std::vector<std::string>& overrides, std::string* text = nullptr) {
+  /// Returns the completed model. `text`, if not null, receives the text of the document, `as_given` the model before completion.
+  Model read(const std::vector<std::string>& overrides, std::string* text = nullptr, Model* as_given = nullptr) {
     refuse_other_files(document_);
     settle(document_, overrides, names_, catalogue_);
     if (text) *text = standalone_text(document_, catalogue_);
@@ -104,10 +104,10 @@ public:
     model_.parameters = parameters_->parameters(document_.root, model_);
     model_.files_without_format = document_.files_without_format;
     model_.renamed_keys = std::move(renamed_);
-    Model as_given = model_;
+    if (as_given) *as_given = model_;
     complete_model();
     finish();
-    return {std::move(as_given), std::move(model_)};
+    return std::move(model_);
   }
 
 private:
@@ -483,11 +483,13 @@ void Reader::finish() {
 } // namespace
 
 Model read_model(const std::string& path, const Catalogue& catalogue, const std::vector<std::string>& overrides, std::string* text) {
-  return Reader(load_document(path), catalogue).read(overrides, text).second;
+  return Reader(load_document(path), catalogue).read(overrides, text);
 }
 
 Model read_given_model(const std::string& path, const Catalogue& catalogue, const std::vector<std::string>& overrides) {
-  return Reader(load_document(path), catalogue).read(overrides).first;
+  Model given;
+  (void)Reader(load_document(path), catalogue).read(overrides, nullptr, &given);
+  return given;
 }
 
 std::string effective_model_text(const std::string& path, const Catalogue& catalogue, const std::vector<std::string>& overrides) {
@@ -498,17 +500,19 @@ std::string effective_model_text(const std::string& path, const Catalogue& catal
 }
 
 Model parse_model(std::string text, const std::string& file_name, const Catalogue& catalogue, const std::vector<std::string>& overrides) {
-  return Reader(parse_document(std::move(text), file_name), catalogue).read(overrides).second;
+  return Reader(parse_document(std::move(text), file_name), catalogue).read(overrides);
 }
 
 Model parse_model_text(std::string text, const std::string& file_name, const Catalogue& catalogue,
                        const std::vector<std::string>& overrides, std::string& standalone) {
-  return Reader(parse_document(std::move(text), file_name), catalogue).read(overrides, &standalone).second;
+  return Reader(parse_document(std::move(text), file_name), catalogue).read(overrides, &standalone);
 }
 
 Model parse_given_model(std::string text, const std::string& file_name, const Catalogue& catalogue,
                         const std::vector<std::string>& overrides) {
-  return Reader(parse_document(std::move(text), file_name), catalogue).read(overrides).first;
+  Model given;
+  (void)Reader(parse_document(std::move(text), file_name), catalogue).read(overrides, nullptr, &given);
+  return given;
 }
 
 } // namespace steplap

@@ -61,6 +61,9 @@ std::string path_named_by(const Node& node, const std::string& name) {
 }
 
 std::string standalone_text(const Document& document, const Catalogue& catalogue) {
+  bool names_files = false;
+  visit_named_files(document.root, catalogue, [&names_files](const Node&, const Node&) { names_files = true; });
+  if (!names_files) return written(document.root); // without a copy: the tree of a large model takes a quarter of a gigabyte
   Node root = document.root;
   std::vector<std::pair<Node*, std::string>> found; // entries and checksums; stored because adding keys moves nodes
   visit_named_files(root, catalogue, [&found](Node& entry, Node& name) {

@@ -50,11 +50,12 @@ namespace {
 int line_of(const toml::source_region& region) { return static_cast<int>(region.begin.line); }
 int column_of(const toml::source_region& region) { return static_cast<int>(region.begin.column); }
 
-Node from_toml(const toml::node& source, const std::string* file);
+Node from_toml(toml::node& source, const std::string* file);
 
-void add_members(const toml::table& table, Node& node) {
+// Moves the members to `node`. The table is emptied, so that a large file is not in memory twice.
+void add_members(toml::table& table, Node& node) {
   node.children.reserve(table.size());
-  for (const auto& [key, value] : table) {
+  for (auto&& [key, value] : table) {
     Node child = from_toml(value, node.file);
     child.key = std::string(key.str());
     child.key_line = line_of(key.source());
@@ -63,6 +64,7 @@ void add_members(const toml::table& table, Node& node) {
   }
   std::stable_sort(node.children.begin(), node.children.end(),
                    [](const Node& a, const Node& b) { return std::pair(a.key_line, a.key_column) < std::pair(b.key_line, b.key_column); });
+  table.clear();
 }
 
 void set_scalar(const toml::node& source, Node& node) {
@@ -83,17 +85,17 @@ void set_scalar(const toml::node& source, Node& node) {
   }
 }
 
-Node from_toml(const toml::node& source, const std::string* file) {
+Node from_toml(toml::node& source, const std::string* file) {
   Node node;
   node.file = file;
   node.line = line_of(source.source());
   node.column = column_of(source.source());
-  if (const toml::table* table = source.as_table()) {
+  if (toml::table* table = source.as_table()) {
     add_members(*table, node);
-  } else if (const toml::array* array = source.as_array()) {
+  } else if (toml::array* array = source.as_array()) {
     node.type = Node::Type::array;
     node.children.reserve(array->size());
-    for (const toml::node& item : *array) node.children.push_back(from_toml(item, file));
+    for (toml::node& item : *array) node.children.push_back(from_toml(item, file));
   } else {
     set_scalar(source, node);
   }
@@ -230,7 +232,8 @@ std::string other_format_hint(std::string_view text, int line) {
 Node parse_toml(const std::string& text, const std::string* file) {
   DottedKeys(text, *file).check();
   try {
-    return from_toml(toml::parse(text, *file), file);
+    toml::table root = toml::parse(text, *file);
+    return from_toml(root, file);
   } catch (const toml::parse_error& error) {
     const toml::source_region& region = error.source();
     throw ModelError(Location{*file, line_of(region), column_of(region)},

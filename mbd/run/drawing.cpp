@@ -56,12 +56,12 @@ public:
     for (const Marker& marker : model.markers) markers_[marker.name] = &marker;
   }
 
-  Json json() {
-    Json elements = Json::array();
-    for (const ElementEntry& entry : model_.elements) elements.push_back(element_json(entry));
-    Json json = object_with_room(10);
-    append(json, "bodies") = bodies_json(); // must follow the elements, which define geometry of bodies
-    append(json, "elements") = std::move(elements);
+  // Elements and bodies become text one by one, because their trees take ten times as much memory.
+  std::string text() {
+    const std::string elements = list_of(model_.elements, [this](const ElementEntry& entry) { return element_json(entry); });
+    // must follow the elements, which define geometry of bodies
+    const std::string bodies = list_of(model_.bodies, [this](const Body& body) { return body_json(body); });
+    Json json = object_with_room(8);
     append(json, "ground") = ground_json();
     append(json, "planes") = planes_;
     append(json, "sheets") = sheets_json();
@@ -70,10 +70,17 @@ public:
     append(json, "looks") = looks_json();
     append(json, "seen_from") = model_.output.seen_from;
     append(json, "gravity") = point_json(model_.header.gravity);
-    return json;
+    return "{\"bodies\":" + bodies + ",\"elements\":" + elements + "," + text_of(json).substr(1);
   }
 
 private:
+  // Invalid UTF-8 in names is replaced.
+  [[nodiscard]] static std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+  template <class Entries, class Make> [[nodiscard]] static std::string list_of(const Entries& entries, const Make& make) {
+    std::string text = "[";
+    for (const auto& entry : entries) text.append(text.size() > 1 ? "," : "").append(text_of(make(entry)));
+    return text + "]";
+  }
   [[nodiscard]] Json cores_json() const {
     Json cores = Json::array();
     for (const TableEntry& entry : model_.tables)
@@ -220,25 +227,21 @@ private:
     json["polygons"] = geometry.polygons;
   }
 
-  Json bodies_json() {
-    Json json = Json::array();
-    for (const Body& body : model_.bodies) {
-      const Vec3 pose = body.reference_pose();
-      const BodyGeometry& geometry = geometry_[body.name];
-      Json entry = object_with_room(10);
-      append(entry, "name") = body.name;
-      append(entry, "label") = body.label;
-      append(entry, "pose") = {pose.x(), pose.y(), pose.z()};
-      append(entry, "fixed") = body.fixed;
-      append(entry, "is_outline_given") = !body.outline.empty();
-      append(entry, "outline") = outline_json(outline_of(body, geometry));
-      add_geometry(geometry, entry);
-      Json& holes = append(entry, "holes") = Json::array();
-      for (const auto openings_of : views_.openings)
-        for (const std::vector<Vec2>& opening : openings_of(body, model_)) holes.push_back(outline_json(opening));
-      json.push_back(std::move(entry));
-    }
-    return json;
+  Json body_json(const Body& body) {
+    const Vec3 pose = body.reference_pose();
+    const BodyGeometry& geometry = geometry_[body.name];
+    Json entry = object_with_room(10);
+    append(entry, "name") = body.name;
+    append(entry, "label") = body.label;
+    append(entry, "pose") = {pose.x(), pose.y(), pose.z()};
+    append(entry, "fixed") = body.fixed;
+    append(entry, "is_outline_given") = !body.outline.empty();
+    append(entry, "outline") = outline_json(outline_of(body, geometry));
+    add_geometry(geometry, entry);
+    Json& holes = append(entry, "holes") = Json::array();
+    for (const auto openings_of : views_.openings)
+      for (const std::vector<Vec2>& opening : openings_of(body, model_)) holes.push_back(outline_json(opening));
+    return entry;
   }
 
   Json ground_json() {
@@ -306,8 +309,6 @@ private:
 
 } // namespace
 
-std::string drawing_json(const Model& model, const KindViews& views) {
-  return Drawing(model, views).json().dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string drawing_json(const Model& model, const KindViews& views) { return Drawing(model, views).text() + "\n"; }
 
 } // namespace steplap

@@ -157,30 +157,33 @@ private:
   Json list_ = Json::array();
 };
 
-Json extremes_json(const Report& report, MeaningIndex& meanings) {
+Json extremes_of(const ChannelRange& range, const Report& report, MeaningIndex& meanings) {
   constexpr std::size_t k_most_entries = 16;
-  Json json = object_with_room(report.ranges().size());
+  Json entry = object_with_room(k_most_entries);
   const auto time = [](const Extreme& extreme) { return std::isnan(extreme.value) ? Json() : Json(extreme.t); };
-  for (const ChannelRange& range : report.ranges()) {
-    Json& entry = append(json, range.channel->name) = object_with_room(k_most_entries);
-    append(entry, "unit") = range.channel->unit;
-    append(entry, "meaning") = meanings.place_of(*range.channel);
-    add_number(entry, "min", range.low.value);
-    entry["t_min"] = time(range.low);
-    add_number(entry, "max", range.high.value);
-    entry["t_max"] = time(range.high);
-    add_number(entry, "final", range.final);
-    if (range.channel->is_on_request) entry["on_request"] = true;
-    if (range.is_low_singular) entry["min_singular"] = true; // the extreme is near a singular position, where reactions may diverge
-    if (range.is_high_singular) entry["max_singular"] = true;
-    if (range.had_no_value && range.channel->is_on_request) entry["had_no_value"] = true; // the formula divided by zero
-    const auto add = [&](const char* key, double ChannelError::*which) { add_error(entry, key, report.error_of(range, which)); };
-    add("error_min", &ChannelError::low);
-    add("error_t_min", &ChannelError::t_low);
-    add("error_max", &ChannelError::high);
-    add("error_t_max", &ChannelError::t_high);
-    add("error_final", &ChannelError::final);
-  }
+  append(entry, "unit") = range.channel->unit;
+  append(entry, "meaning") = meanings.place_of(*range.channel);
+  add_number(entry, "min", range.low.value);
+  entry["t_min"] = time(range.low);
+  add_number(entry, "max", range.high.value);
+  entry["t_max"] = time(range.high);
+  add_number(entry, "final", range.final);
+  if (range.channel->is_on_request) entry["on_request"] = true;
+  if (range.is_low_singular) entry["min_singular"] = true; // the extreme is near a singular position, where reactions may diverge
+  if (range.is_high_singular) entry["max_singular"] = true;
+  if (range.had_no_value && range.channel->is_on_request) entry["had_no_value"] = true; // the formula divided by zero
+  const auto add = [&](const char* key, double ChannelError::*which) { add_error(entry, key, report.error_of(range, which)); };
+  add("error_min", &ChannelError::low);
+  add("error_t_min", &ChannelError::t_low);
+  add("error_max", &ChannelError::high);
+  add("error_t_max", &ChannelError::t_high);
+  add("error_final", &ChannelError::final);
+  return entry;
+}
+
+Json extremes_json(const Report& report, MeaningIndex& meanings) {
+  Json json = object_with_room(report.ranges().size());
+  for (const ChannelRange& range : report.ranges()) append(json, range.channel->name) = extremes_of(range, report, meanings);
   return json;
 }
 
@@ -389,7 +392,10 @@ OrderedJson summary_head(const Report& report, ShownDigits digits) {
   return json;
 }
 
-OrderedJson summary_document(const Report& report, ShownDigits digits) {
+namespace {
+
+// Returns the document up to the extremes.
+Json document_before_extremes(const Report& report, ShownDigits digits) {
   const Run& run = report.run;
   const LoadedModel& loaded = *run.loaded;
   const RunStatistics& statistics = run.result.statistics;
@@ -408,20 +414,72 @@ OrderedJson summary_document(const Report& report, ShownDigits digits) {
     for (std::string& effect : effects_of(loaded.model)) left_out.push_back(std::move(effect));
   if (!left_out.empty()) json["left_out"] = left_out;
   if (report.second_opinion) json["second_opinion"] = second_opinion_json(*report.second_opinion);
-  MeaningIndex meanings;
-  json["extremes"] = extremes_json(report, meanings);
-  json["meanings"] = meanings.list();
-  json["final_state"] = state_json(*loaded.system, run.result.final_state, report);
   return json;
 }
 
+// Appends the entries after the extremes.
+void add_after_extremes(Json& json, const Report& report, const MeaningIndex& meanings) {
+  json["meanings"] = meanings.list();
+  json["final_state"] = state_json(*report.run.loaded->system, report.run.result.final_state, report);
+}
+
+// Invalid UTF-8 in names is replaced, because an exception after a long run would lose its results.
+std::string text_of(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
+
+// Returns the entries of an object as text, each on new lines, indented by `more` blanks more than in an object that is a document. JSON
+// text contains line breaks only between its parts.
+std::string entries_text(const Json& object, std::string_view more = "") {
+  const std::string text = text_of(object);
+  std::string entries;
+  for (const char c : std::string_view(text).substr(1, text.size() - 3)) { // without "{" and "\n}"
+    entries += c;
+    if (c == '\n') entries += more;
+  }
+  return entries;
+}
+
+} // namespace
+
+OrderedJson summary_document(const Report& report, ShownDigits digits) {
+  Json json = document_before_extremes(report, digits);
+  MeaningIndex meanings;
+  json["extremes"] = extremes_json(report, meanings);
+  add_after_extremes(json, report, meanings);
+  return json;
+}
+
+// Writes the text of summary_document() with `files`. The extremes become text one by one: as one tree they take ten times as much memory.
+void write_summary(const Report& report, const FileRecords& files, const FileSink& put) {
+  constexpr std::size_t k_part = 1 << 16; // bytes per piece, about the size of a cache
+  Sha256 digest;
+  std::string text = "{" + entries_text(document_before_extremes(report, {})) + ",\n  \"extremes\": {";
+  const auto put_text = [&] {
+    digest.add(text);
+    put(text);
+    text.clear();
+  };
+  MeaningIndex meanings;
+  bool is_first = true;
+  for (const ChannelRange& range : report.ranges()) {
+    Json entry = Json::object();
+    append(entry, range.channel->name) = extremes_of(range, report, meanings);
+    text += (is_first ? "" : ",") + entries_text(entry, "  ");
+    is_first = false;
+    if (text.size() >= k_part) put_text();
+  }
+  text += is_first ? "}" : "\n  }";
+  Json rest = Json::object();
+  add_after_extremes(rest, report, meanings);
+  rest["files"] = files_json(files);
+  text += "," + entries_text(rest);
+  put_text();
+  put(std::string(k_before_checksum) + digest.hex() + std::string(k_after_checksum));
+}
+
 std::string summary_json(const Report& report, const FileRecords& files) {
-  Json json = summary_document(report);
-  json["files"] = files_json(files);
-  // Invalid UTF-8 in names is replaced, because an exception after a long run would lose its results.
-  std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
-  text.resize(text.size() - 2); // removes "\n}"
-  return text + std::string(k_before_checksum) + sha256(text) + std::string(k_after_checksum);
+  std::string text;
+  write_summary(report, files, [&text](std::string_view part) { text += part; });
+  return text;
 }
 
 std::string_view checked_summary(std::string_view text) {

@@ -256,7 +256,7 @@ std::vector<ResultFile> result_files(const Report& report) {
           noted(prefix + "events.csv", whole(events), records),
           noted(prefix + "model.toml", whole(model_file_text(*run.loaded)), records),
           noted(prefix + "drawing.json", whole(drawing_json(run.loaded->model, *run.loaded->views)), records),
-          {prefix + "summary.json", "", [&report, records](const FileSink& put) { put(summary_json(report, *records)); }}};
+          {prefix + "summary.json", "", [&report, records](const FileSink& put) { write_summary(report, *records, put); }}};
 }
 
 void check_result_folder(const std::string& folder, bool is_overwriting) {

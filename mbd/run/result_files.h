@@ -44,7 +44,9 @@ struct FileRecord {
 };
 /// One record per file, in the order of writing.
 using FileRecords = std::vector<FileRecord>;
-/// Returns the text of summary.json, which lists `files` and ends with a checksum of itself.
+/// Writes summary.json, which lists `files` and ends with a checksum of itself.
+void write_summary(const Report& report, const FileRecords& files, const FileSink& put);
+/// Returns the text of summary.json.
 [[nodiscard]] std::string summary_json(const Report& report, const FileRecords& files);
 /// Returns the part of a summary before its checksum; empty if the checksum is missing or wrong.
 [[nodiscard]] std::string_view checked_summary(std::string_view text);
