@@ -134,16 +134,21 @@ void ContactImpacts::weigh(const Evaluation& e, std::vector<PairJacobian>& parts
     const std::size_t first = first_of_group[source.group];
     for (std::size_t i = 0; i < source.units.size(); ++i) {
       if (source.units[i] >= impact_.size() || !impact_[source.units[i]].is_on) continue;
-      const Impact& impact = impact_[source.units[i]];
+      Impact& impact = impact_[source.units[i]];
       PairJacobian& part = parts[first + i];
       const Eigen::Matrix<double, 6, 1> by_pose = part.normal.head<6>(), by_velocity = part.normal.tail<6>();
       const bool is_damped = by_velocity.squaredNorm() > 0.0;
       const Eigen::Matrix<double, 6, 1>& x = is_damped ? by_velocity : by_pose;
+      const double square = x.squaredNorm();
+      if (impact.lands && !(square > 0.0)) { // its law has no force before it closes: penetrating without one would add energy
+        impact = {};
+        impact.is_refused = true;
+        continue;
+      }
       Force& force = forces_.emplace_back();
       force.body[0] = part.a;
       force.body[1] = part.b;
       force.missing = impact.share - 1.0;
-      const double square = x.squaredNorm();
       force.value.setZero();
       if (square > 0.0) force.value = e.contact_force[part.contact] / square * ((is_damped ? part.damping : part.stiffness) * x);
       part.stiffness *= impact.slope();
