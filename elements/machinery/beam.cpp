@@ -49,7 +49,7 @@ public:
       // Dummy values, so that references to the beam cause no further errors.
       values_ = {1.0, Vec2::UnitX(), 1.0, 1.0, {1.0, 1.0, 1.0}, 0.0};
     for (long i = 0; i <= beam_.segments; ++i) add_segment(i);
-    for (long i = 1; i <= beam_.segments; ++i) add_part(i);
+    for (long i = 1; i <= beam_.segments; ++i) add_elastic_part(i);
     add_marker("start", 0, Vec2::Zero());
     add_marker("end", beam_.segments, Vec2::Zero());
     if (!problems_.empty()) throw ModelError(std::move(problems_));
@@ -67,7 +67,7 @@ private:
   void find_material();
   void find_damping();
   void add_segment(long i);
-  void add_part(long i);
+  void add_elastic_part(long i);
   std::string add_marker(const std::string& name, long segment, const Vec2& point);
 
   const Beam& beam_;
@@ -157,7 +157,8 @@ std::string BeamMaker::add_marker(const std::string& name, long segment, const V
   return marker.name;
 }
 
-void BeamMaker::add_part(long i) {
+// Adds the elastic element between the segments i − 1 and i.
+void BeamMaker::add_elastic_part(long i) {
   const double h = part_length();
   const std::string name = "part " + std::to_string(i);
   BeamPart& part = add_element<BeamPart>(model_, beam_part_kind(), beam_.name + "." + name);

@@ -127,7 +127,8 @@ public:
         for (const RopePart& other : entry.parts) {
           const bool is_same = &one == &other;
           const Gradient h = is_same ? g : gradient_of(other, e.motion);
-          // Derivative of the tension with respect to the other part's length, including the rate.
+          // Derivative of the tension k L + c L̇ with respect to poses and velocities of the bodies at the part `other`: the length and
+          // rate of the whole rope, with the derivatives of those of this part.
           const D12 length = h.length + D12(way.length - h.length.v), rate = h.rate + D12(way.rate - h.rate.v);
           const D12 change = entry.law.force(-length, -rate, mode);
           if (is_same) add_whole(one, g, f, change, out);
@@ -169,8 +170,8 @@ public:
 
 private:
   struct Gradient {
-    D12 length, rate;
-    D12 j[6]; ///< derivatives of the part's length with respect to the poses of a and b
+    D12 length, rate; ///< with derivatives by the poses (first six) and velocities of a and b
+    D12 j[6];         ///< derivatives of the part's length with respect to the poses of a and b
   };
   static Gradient gradient_of(const RopePart& part, const Motion<double>* motion) {
     const auto m = part.measure.at<false, D12>(seeded(motion[part.a], 0), seeded(motion[part.b], 3));
@@ -182,6 +183,7 @@ private:
     sum.fy += force.y;
     sum.m += cross(lever, force);
   }
+  // Adds the derivatives of the forces of a part with respect to the motion of its own bodies.
   static void add_whole(const RopePart& part, const Gradient& g, double f, const D12& change, std::vector<PairJacobian>& out) {
     PairJacobian& j = out.emplace_back();
     j.a = part.a;

@@ -38,7 +38,10 @@ public:
     int inner = 0;
     int link = 0, unit = 0, first_event = 0;
   };
-  /// Event functions: bound or flow; separation of interfaces; sharpness of the corner of the limit surface.
+  /// Number of event functions; each becomes negative when its event occurs:
+  /// 0  onset or end of yielding: 1 − u(W) while the joint holds, slip speed γ while it yields
+  /// 1  separation of the next interface, or of the whole joint
+  /// 2  start or end of a corner of the limit surface, where the slip direction is a state: from the radius of curvature (roundness())
   static constexpr int k_event_count = 3;
   std::vector<ElementData> entries;
 

@@ -106,10 +106,10 @@ public:
   [[nodiscard]] FrictionPhase phase(const Snapshot& s) const;
 
   // --- elastic joints -----------------------------------------------------------------------------------
-  // Yielding of an elastic joint: rate ṗ of the slid pose, and slip speed γ at the centre of the joint.
+  /// Yielding of an elastic joint.
   struct Flow {
-    Vec3 rate = Vec3::Zero();
-    double speed = 0.0;
+    Vec3 rate = Vec3::Zero();      ///< rate ṗ of the slid pose
+    double speed = 0.0;            ///< slip speed γ at the centre of the joint
     Vec3 direction = Vec3::Zero(); ///< unit direction n
     double resistance = 1.0;       ///< resistance to the slip n·K n + u ∂h/∂p·n
     double roundness = 1.0;        ///< roundness of the limit surface at n
@@ -119,9 +119,10 @@ public:
     Vec3 by_speed = Vec3::Zero(); ///< residual wrench per unit of speed
     double relaxation = 0.0;      ///< rate at which |y| returns to 1
   };
-  /// Returns the flow in the direction given by the force K (s − p); `rate`: ṡ.
+  /// Returns the flow under the force K (s − p), whose direction determines that of the slip. `slid`: slid pose p; `rate`: rate ṡ of the
+  /// relative pose.
   [[nodiscard]] Flow flow_under(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& rate) const;
-  /// Returns the flow in direction y (scaled, |y| about 1) for this force.
+  /// Returns the flow under the same force at a corner of the limit surface, where the slip direction is a state y (scaled, |y| about 1).
   [[nodiscard]] Flow flow_along(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& direction, const Vec3& rate) const;
   /// Derivatives of ṗ (first three rows) and ẏ of flow_along().
   struct FlowSlopes {

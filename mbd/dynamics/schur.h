@@ -66,11 +66,11 @@ public:
   /// Factorises A for the present j and wj, with its diagonal increased by the fraction `shift` (damping). Does not allocate, except the
   /// first time that HubSolver refuses the numbers.
   void factor(const std::vector<SchurRow>& rows, double shift = 0.0);
-  /// Makes the next factorisation decide which friction rows are left out. The decision remains until the next call of decide_rank():
-  /// otherwise rounding of a pivot could change it within a step. Rows that were left out before (`was_out`) stay out up to twice the
-  /// bound.
+  /// Requests that the next factorisation decides which friction rows are left out. The decision remains until the next call of
+  /// decide_rank(): otherwise rounding of a pivot could change it within a step. Rows that were left out before (`was_out`) stay out up to
+  /// twice the bound.
   void decide_rank(const std::vector<char>& is_friction, const std::vector<char>& was_out);
-  /// Returns true if decide_rank() was called and no factorisation has followed.
+  /// Returns true between decide_rank() and the next factorisation: the rows to be left out are not decided yet.
   [[nodiscard]] bool is_rank_open() const { return is_rank_open_; }
   /// Records factor() and solve() on a tape, x = A⁻¹ x, for independent rows with can_be_traced(). The tape is valid while all relative
   /// pivots are above `least_pivot`. Appends the pivots from which smallest_pivot() is computed to `pivots`.

@@ -181,7 +181,7 @@ void FormulaProgram::add_node(const FormulaNode& node, std::vector<int>& place) 
 
 // Returns the first of `guard` and its enclosing guards such that its condition, and those of all guards around it, are evaluated before
 // `step`; −1 if there is none.
-int FormulaProgram::known_before(int guard, int step) const {
+int FormulaProgram::innermost_guard_before(int guard, int step) const {
   int known = std::max(guard, -1);
   for (int g = known; g >= 0; g = guards_[static_cast<std::size_t>(g)].outer)
     if (guards_[static_cast<std::size_t>(g)].condition >= step) known = guards_[static_cast<std::size_t>(g)].outer;
@@ -200,7 +200,7 @@ void FormulaProgram::set_guards() {
   };
   for (int i = size() - 1; i >= 0; --i) {
     const Step& step = steps_[static_cast<std::size_t>(i)];
-    const int own = known_before(guard[static_cast<std::size_t>(i)], i);
+    const int own = innermost_guard_before(guard[static_cast<std::size_t>(i)], i);
     steps_[static_cast<std::size_t>(i)].guard = own;
     if (step.op != FormulaOp::choice) {
       for (const int used : step.of)

@@ -148,7 +148,9 @@ private:
   int add_power(int base, int exponent);
   void add_node(const FormulaNode& node, std::vector<int>& place);
   void set_guards();
-  [[nodiscard]] int known_before(int guard, int step) const;
+  // Returns the innermost of `guard` and its enclosing guards for which all conditions, its own and the enclosing ones, are computed before
+  // `step`; −1 if there is none.
+  [[nodiscard]] int innermost_guard_before(int guard, int step) const;
   template <class S> [[nodiscard]] bool holds(int guard, const S* values) const {
     for (; guard >= 0; guard = guards_[static_cast<std::size_t>(guard)].outer) {
       const Guard& g = guards_[static_cast<std::size_t>(guard)];

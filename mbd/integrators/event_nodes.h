@@ -32,8 +32,8 @@ struct EventStep {
   bool is_of_joint = false; ///< the slot belongs to a step-lap joint, whose capacity is proportional to its clamping force
   EventEnd start, end;
 };
-/// Values of all event functions at the stages of one step.
 
+/// Values of all event functions at the stages of one step.
 class EventNodes {
 public:
   explicit EventNodes(int slots)
@@ -63,7 +63,7 @@ private:
     std::array<double, k_most + 2> x{}, w{}, bend{}; ///< bend[j]: w″ from the second difference about node j
     double start_slope = 0.0, end_slope = 0.0;
     double most_bend = 0.0;                    ///< lower limit of M if there are few nodes, from the range of w
-    [[nodiscard]] double bound(int gap) const; ///< returns M between nodes `gap` and `gap` + 1
+    [[nodiscard]] double bound(int gap) const; ///< returns M ≥ |w″| between nodes `gap` and `gap` + 1
     [[nodiscard]] bool is_positive_in(int gap) const;
     [[nodiscard]] bool falls_once_in(int gap) const;
   };

@@ -30,7 +30,7 @@ void ExplicitPair::on_restart(Dynamics&) {
   approach_.restart();
 }
 
-double ExplicitPair::shorter(double error) const {
+double ExplicitPair::shrink_factor(double error) const {
   if (!std::isfinite(error)) return k_shorter;
   return std::clamp(0.9 * portable::pow(error, -1.0 / order_), k_shortest_retry, 0.9);
 }
@@ -51,7 +51,7 @@ double ExplicitPair::error_inside(Dynamics& dynamics) {
 bool ExplicitPair::dense_output_is_accurate(Dynamics& dynamics) {
   if (is_crossing_ || is_inside_known_) return true;
   const double inside = error_inside(dynamics);
-  return inside <= 1.0 || !withdraw(dynamics, h_ * shorter(inside));
+  return inside <= 1.0 || !withdraw(dynamics, h_ * shrink_factor(inside));
 }
 
 bool ExplicitPair::withdraw(Dynamics& dynamics, double h) {
@@ -145,7 +145,7 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
     else if (is_end_accurate && !try_finish_step(dynamics)) h = rejected(k_shorter);
     else if (is_end_accurate && accept_inside(dynamics, h, error, is_retry, inside)) return;
     else if (inside <= 1.0 && passage.needs_other_stages()) h = rejected(SingularPassage::k_shorter_across);
-    else refuse_shorter_than_rounding(h = rejected(shorter(std::max(error, inside))));
+    else refuse_shorter_than_rounding(h = rejected(shrink_factor(std::max(error, inside))));
   }
 }
 

@@ -69,11 +69,12 @@ private:
   [[nodiscard]] double cross_singularity(Dynamics& dynamics, double left);
   void note_end(double pivot);
   [[nodiscard]] double error_inside(Dynamics& dynamics);
-  [[nodiscard]] double shorter(double error) const;
-  /// Counts a rejected attempt. Returns the ratio of the next step length to the rejected one.
-  [[nodiscard]] double rejected(double share) {
+  /// Returns the ratio of the next step length to the rejected one for this error norm.
+  [[nodiscard]] double shrink_factor(double error) const;
+  /// Counts a rejected attempt. Returns the length of the next one, `factor` times that of the rejected one.
+  [[nodiscard]] double rejected(double factor) {
     ++rejections_;
-    return share * h_;
+    return factor * h_;
   }
 
   StepControl control_;

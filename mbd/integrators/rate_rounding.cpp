@@ -8,7 +8,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_rounding = 0.5 * std::numeric_limits<double>::epsilon(); // of one sum, relative
+constexpr double k_rounding = 0.5 * std::numeric_limits<double>::epsilon(); // relative rounding error of one sum
 
 // Linear congruential generator of Numerical Recipes; its highest bit is the sign.
 double next_sign(std::uint32_t& state) {
@@ -21,7 +21,7 @@ double next_sign(std::uint32_t& state) {
 void RateRounding::restart() {
   steps_ = 0;
   is_known_ = false;
-  signs_ = 0; // a leg does not depend on those before it
+  signs_ = 0; // restarted, so that a leg does not depend on earlier ones
   std::fill(size_.begin(), size_.end(), 0.0);
 }
 
@@ -29,7 +29,8 @@ void RateRounding::note_step(Dynamics& dynamics, double t, const double* y, cons
   if (steps_++ % k_interval == 0) measure(dynamics, t, y, dy, length, scratch);
 }
 
-// A place is rounded as a sum of coordinate and lever, an angle as a direction, whose numbers are of size 1.
+// The rounding error of a position is that of the sum of coordinate and lever arm; that of an angle is the error of a direction, whose
+// components are of size 1.
 void RateRounding::measure(Dynamics& dynamics, double t, const double* y, const double* dy, double length, double* scratch) {
   const int n = dynamics.dimension();
   coordinates_ = dynamics.coordinate_count();

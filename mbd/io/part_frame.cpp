@@ -13,10 +13,10 @@ namespace steplap {
 
 namespace {
 
-bool is_zero(const PlacedNumber& number) { return number.is_number() && number.value == 0.0; }
+bool is_zero(const NumberOrFormula& number) { return number.is_number() && number.value == 0.0; }
 
 // Returns the number as text for an operand of a formula, in brackets if it is a formula.
-std::string operand(const PlacedNumber& number, const std::string& unit) {
+std::string operand(const NumberOrFormula& number, const std::string& unit) {
   if (!number.is_number()) return "(" + number.formula + ")";
   const std::string text = number_text(number.value);
   if (!unit.empty()) return "'" + text + " " + unit + "'";
@@ -24,18 +24,18 @@ std::string operand(const PlacedNumber& number, const std::string& unit) {
 }
 
 // Returns the number as text for the first operand of a sum. It needs no brackets, since sums are evaluated from the left.
-std::string summand(const PlacedNumber& number, const std::string& unit) {
+std::string summand(const NumberOrFormula& number, const std::string& unit) {
   return number.is_number() ? operand(number, unit) : number.formula;
 }
 
-PlacedNumber sum(const PlacedNumber& a, const PlacedNumber& b, const std::string& unit) {
+NumberOrFormula sum(const NumberOrFormula& a, const NumberOrFormula& b, const std::string& unit) {
   if (a.is_number() && b.is_number()) return {a.value + b.value, ""};
   return {0.0, summand(a, unit) + " + " + operand(b, unit)};
 }
 
-bool is_sum(const PlacedNumber& number) { return number.formula.find_first_of("?<>=&|") == std::string::npos; }
+bool is_sum(const NumberOrFormula& number) { return number.formula.find_first_of("?<>=&|") == std::string::npos; }
 
-void set(Node& node, const PlacedNumber& number) {
+void set(Node& node, const NumberOrFormula& number) {
   node.type = number.is_number() ? Node::Type::number : Node::Type::text;
   if (number.is_number()) node.scalar = number.value;
   else node.scalar = "= " + number.formula;
@@ -68,22 +68,22 @@ Node node_at(const std::string& key, const Node& at) {
   return node;
 }
 
-std::optional<PlacedNumber> placed_number(const Node& node, const std::string& unit) {
-  if (node.type == Node::Type::integer) return PlacedNumber{static_cast<double>(std::get<long>(node.scalar)), ""};
-  if (node.type == Node::Type::number) return PlacedNumber{std::get<double>(node.scalar), ""};
+std::optional<NumberOrFormula> number_or_formula(const Node& node, const std::string& unit) {
+  if (node.type == Node::Type::integer) return NumberOrFormula{static_cast<double>(std::get<long>(node.scalar)), ""};
+  if (node.type == Node::Type::number) return NumberOrFormula{std::get<double>(node.scalar), ""};
   if (node.type != Node::Type::text) return std::nullopt;
   if (is_formula(node)) {
-    if (const std::optional<double> value = value_without_operands(node, unit)) return PlacedNumber{*value, ""};
-    PlacedNumber made{0.0, node.text().substr(node.text().find('=') + 1)};
+    if (const std::optional<double> value = value_without_operands(node, unit)) return NumberOrFormula{*value, ""};
+    NumberOrFormula made{0.0, node.text().substr(node.text().find('=') + 1)};
     if (!is_sum(made)) made.formula = "(" + made.formula + ")";
     return made;
   }
   const Quantity quantity = parse_quantity(node.text(), unit);
   if (!quantity.problem.empty()) return std::nullopt;
-  return PlacedNumber{quantity.value, ""};
+  return NumberOrFormula{quantity.value, ""};
 }
 
-PartFrame::PartFrame(const PartFrame& outer, const PlacedNumber& x, const PlacedNumber& y, const PlacedNumber& angle)
+PartFrame::PartFrame(const PartFrame& outer, const NumberOrFormula& x, const NumberOrFormula& y, const NumberOrFormula& angle)
     : x_(outer.placed(x, y, false)), y_(outer.placed(x, y, true)), angle_(is_zero(angle)          ? outer.angle_
                                                                           : is_zero(outer.angle_) ? angle
                                                                                                   : sum(outer.angle_, angle, "")) {
@@ -100,16 +100,16 @@ PartFrame::PartFrame(const PartFrame& outer, const PlacedNumber& x, const Placed
   }
 }
 
-PlacedNumber PartFrame::turned(const PlacedNumber& first, const PlacedNumber& second, bool is_y, const std::string& unit) const {
-  const PlacedNumber &along = is_y ? sin_ : cos_, &across = is_y ? cos_ : sin_;
+NumberOrFormula PartFrame::turned(const NumberOrFormula& first, const NumberOrFormula& second, bool is_y, const std::string& unit) const {
+  const NumberOrFormula &along = is_y ? sin_ : cos_, &across = is_y ? cos_ : sin_;
   if (first.is_number() && second.is_number() && angle_.is_number())
     return {is_y ? along.value * first.value + across.value * second.value : along.value * first.value - across.value * second.value, ""};
-  const auto factor = [](const PlacedNumber& n) { return n.is_number() ? operand(n, "") : n.formula; };
+  const auto factor = [](const NumberOrFormula& n) { return n.is_number() ? operand(n, "") : n.formula; };
   return {0.0, factor(along) + "*" + operand(first, unit) + (is_y ? " + " : " - ") + factor(across) + "*" + operand(second, unit)};
 }
 
-PlacedNumber PartFrame::placed(const PlacedNumber& first, const PlacedNumber& second, bool is_y) const {
-  const PlacedNumber& origin = is_y ? y_ : x_;
+NumberOrFormula PartFrame::placed(const NumberOrFormula& first, const NumberOrFormula& second, bool is_y) const {
+  const NumberOrFormula& origin = is_y ? y_ : x_;
   if (!is_placed_) return is_y ? second : first;
   if (!is_turned_) return sum(origin, is_y ? second : first, "m");
   return sum(origin, turned(first, second, is_y, "m"), "m");
@@ -121,7 +121,7 @@ void PartFrame::place_points(Node& node) const {
     for (Node& child : node.children) place_points(child);
     return;
   }
-  const std::optional<PlacedNumber> x = placed_number(node.children[0], "m"), y = placed_number(node.children[1], "m");
+  const std::optional<NumberOrFormula> x = number_or_formula(node.children[0], "m"), y = number_or_formula(node.children[1], "m");
   if (!x || !y) return;
   set(node.children[0], placed(*x, *y, false));
   set(node.children[1], placed(*x, *y, true));
@@ -129,7 +129,7 @@ void PartFrame::place_points(Node& node) const {
 
 void PartFrame::turn_vector(Node& node, const std::string& unit) const {
   if (!is_turned_ || node.type != Node::Type::array || node.children.size() != 2) return;
-  const std::optional<PlacedNumber> x = placed_number(node.children[0], unit), y = placed_number(node.children[1], unit);
+  const std::optional<NumberOrFormula> x = number_or_formula(node.children[0], unit), y = number_or_formula(node.children[1], unit);
   if (!x || !y) return;
   set(node.children[0], turned(*x, *y, false, unit));
   set(node.children[1], turned(*x, *y, true, unit));
@@ -137,7 +137,7 @@ void PartFrame::turn_vector(Node& node, const std::string& unit) const {
 
 void PartFrame::turn_angle(Node& node) const {
   if (!is_turned_) return;
-  if (const std::optional<PlacedNumber> angle = placed_number(node, "rad")) set(node, sum(angle_, *angle, ""));
+  if (const std::optional<NumberOrFormula> angle = number_or_formula(node, "rad")) set(node, sum(angle_, *angle, ""));
 }
 
 Node PartFrame::origin_node(const std::string& key, const Node& where) const {

@@ -16,8 +16,8 @@ namespace steplap {
 /// Returns a node without a value, at the location of `at`.
 [[nodiscard]] Node node_at(const std::string& key, const Node& at);
 
-/// Number in SI units, or a formula for it.
-struct PlacedNumber {
+/// Value of a field that a frame can transform: a number in SI units, or a formula for it.
+struct NumberOrFormula {
   double value = 0.0;
   std::string formula; ///< formula without '='; "": the number applies
 
@@ -25,14 +25,14 @@ struct PlacedNumber {
 };
 
 /// Reads a number, a number with its unit, or a formula. Returns nothing for any other value; the reader of the field reports that error.
-[[nodiscard]] std::optional<PlacedNumber> placed_number(const Node& node, const std::string& unit);
+[[nodiscard]] std::optional<NumberOrFormula> number_or_formula(const Node& node, const std::string& unit);
 
 class PartFrame {
 public:
   /// Creates the frame of the model itself.
   PartFrame() = default;
   /// Creates a frame given relative to the frame `outer`.
-  PartFrame(const PartFrame& outer, const PlacedNumber& x, const PlacedNumber& y, const PlacedNumber& angle);
+  PartFrame(const PartFrame& outer, const NumberOrFormula& x, const NumberOrFormula& y, const NumberOrFormula& angle);
 
   /// Returns true if the frame has a position or angle of its own, that is, differs from the model's frame.
   [[nodiscard]] bool is_placed() const { return is_placed_; }
@@ -50,11 +50,12 @@ public:
   [[nodiscard]] Node angle_node(const std::string& key, const Node& where) const;
 
 private:
-  [[nodiscard]] PlacedNumber turned(const PlacedNumber& first, const PlacedNumber& second, bool is_y, const std::string& unit) const;
-  [[nodiscard]] PlacedNumber placed(const PlacedNumber& first, const PlacedNumber& second, bool is_y) const;
+  [[nodiscard]] NumberOrFormula turned(const NumberOrFormula& first, const NumberOrFormula& second, bool is_y,
+                                       const std::string& unit) const;
+  [[nodiscard]] NumberOrFormula placed(const NumberOrFormula& first, const NumberOrFormula& second, bool is_y) const;
 
-  PlacedNumber x_, y_, angle_;
-  PlacedNumber cos_{1.0, ""}, sin_;
+  NumberOrFormula x_, y_, angle_;
+  NumberOrFormula cos_{1.0, ""}, sin_;
   bool is_placed_ = false, is_turned_ = false;
 };
 

@@ -116,7 +116,7 @@ private:
   void take_parts(const Node& parts, const PartPlacement& outer);
   void take(const Node& part, const PartPlacement& outer);
   [[nodiscard]] bool has_usable_name(const Node& part);
-  [[nodiscard]] std::optional<PlacedNumber> place_value(const Node& part, const char* key, const char* unit, const PartPlacement& outer);
+  [[nodiscard]] std::optional<NumberOrFormula> place_value(const Node& part, const char* key, const char* unit, const PartPlacement& outer);
   [[nodiscard]] const PartFile* file_of(const Node& part);
   [[nodiscard]] bool is_free_to_take(const Node& file, const std::string& path);
   void write(const PartFile& file, const PartPlacement& place);
@@ -178,12 +178,12 @@ bool PartWriter::has_usable_name(const Node& part) {
 }
 
 // Returns x, y or angle of a part, relative to the including file. Reports an error and returns nothing if the value is invalid.
-std::optional<PlacedNumber> PartWriter::place_value(const Node& part, const char* key, const char* unit, const PartPlacement& outer) {
+std::optional<NumberOrFormula> PartWriter::place_value(const Node& part, const char* key, const char* unit, const PartPlacement& outer) {
   const Node* const given = part.find(key);
-  if (!given) return PlacedNumber{};
+  if (!given) return NumberOrFormula{};
   Node own = *given;
   prefix_formulas(own, outer.prefix);
-  const std::optional<PlacedNumber> number = placed_number(own, unit);
+  const std::optional<NumberOrFormula> number = number_or_formula(own, unit);
   if (number && !number->is_number())
     document_.part_places.push_back({own, unit, std::string("'") + key + "' of part '" + outer.prefix + entry_name(part) + "'"});
   if (number) return number;

@@ -18,10 +18,10 @@ namespace {
 const char* const k_index = "i";
 constexpr std::size_t k_shown_name = 60; // bytes of a name in a message that is about its length
 
-// Creates the entry of one index.
-class Repetition {
+// Creates one copy of a repeated entry, in which the index i has a given value.
+class RepeatedEntry {
 public:
-  Repetition(long index, std::vector<Diagnostic>& problems) : index_(index), text_(std::to_string(index)), problems_(problems) {}
+  RepeatedEntry(long index, std::vector<Diagnostic>& problems) : index_(index), text_(std::to_string(index)), problems_(problems) {}
 
   [[nodiscard]] Node entry(const Node& entry) {
     Node result = entry;
@@ -183,7 +183,7 @@ void write_out_repetitions(Node& root, std::size_t& made, std::vector<Diagnostic
       }
       made += static_cast<std::size_t>(*count);
       const std::size_t before = problems.size(), begin = entries.size();
-      for (long i = 0; i < *count && problems.size() == before; ++i) entries.push_back(Repetition(i, problems).entry(entry));
+      for (long i = 0; i < *count && problems.size() == before; ++i) entries.push_back(RepeatedEntry(i, problems).entry(entry));
       if (problems.size() != before) entries.resize(begin);
     }
     array->children = std::move(entries);

@@ -65,7 +65,8 @@ Signal of_angle(double angle, double omega, int first) {
   return sines(std::move(waves), first == 0 ? bessel(0, angle) : 0.0);
 }
 
-Signal whole_sea(const Sea& sea, double angle, double omega, double heave_omega) {
+// Returns the requested component of the motion without its gradual start. `angle`: amplitude Θ, rad.
+Signal sea_at_full_amplitude(const Sea& sea, double angle, double omega, double heave_omega) {
   if (sea.component == "angle") return sines({sine(angle, omega)});
   if (sea.component == "height") return sines({sine(-sea.heave / (heave_omega * heave_omega), heave_omega, sea.heave_phase)});
   const bool is_x = sea.component == "x";
@@ -88,7 +89,7 @@ Signal build_sea(const SignalDefinition& definition) {
   growing.harmonics.push_back({-0.5, k_pi / rise, 0.0});
   whole.start = rise;
   whole.c[0] = 1.0;
-  const Signal envelope({growing, whole}), wave = whole_sea(sea, angle, omega, heave_omega);
+  const Signal envelope({growing, whole}), wave = sea_at_full_amplitude(sea, angle, omega, heave_omega);
   return delayed(product_of({&envelope, &wave}), sea.start);
 }
 

@@ -24,9 +24,11 @@ private:
 
 /// Lengths by which the coordinates of a model are scaled.
 struct SceneScale {
-  double length = 1.0; ///< m: extent of its bodies, or largest distance of a joint from the centre of its body
-  double reach = 1.0;  ///< m: largest coordinate, at least `length`
-  VecX scale;          ///< per coordinate: 1 for lengths, 1/radius for angles
+  /// Length scale of the model, m: the larger of the extent of the bodies' centres in x or y and the largest distance of a joint from the
+  /// centre of its body. If both are almost zero, it is the largest radius of gyration.
+  double length = 1.0;
+  double reach = 1.0; ///< largest position in x or y, at least `length`, m
+  VecX scale;         ///< per coordinate: 1 for positions, 1/radius for angles
 };
 [[nodiscard]] SceneScale scale_of(const System& system, const State& state);
 

@@ -10,13 +10,15 @@ namespace steplap {
 
 namespace {
 
-// Limit for automatic estimates. One evaluated part takes about 40 to 300 ns; with much sliding more.
-constexpr double k_little = 1e7; // limit in evaluated parts (evaluation_cost())
-constexpr double k_most = 3.0;   // finer runs that need more than k_most times the limit are abandoned
-// Least number of permitted evaluations for adaptive reference runs. Such runs may be cheap even if the run itself has many short steps;
-// they are tried with at most the work of the run.
+// Limit for automatic estimates, in evaluated parts (evaluation_cost()). One part takes about 40 to 300 ns; with much sliding more.
+constexpr double k_little = 1e7;
+constexpr double k_most = 3.0; // finer runs that need more than k_most times the limit are abandoned
+// If finer runs are too expensive, adaptive reference runs may still be cheap, when the run itself has many short steps. They may use at
+// most as many evaluations as the run. If that is fewer than this number, they are not tried.
 constexpr double k_least_references = 5000.0;
-constexpr double k_nudged = 1.5; // permitted cost of a run from a perturbed pose, in runs; verdicts require it even if it is expensive
+// The search for unstable equilibria by runs from a perturbed pose may use this many times the evaluations of the run, even if that exceeds
+// the limit for automatic estimates, because the verdict depends on its result.
+constexpr double k_nudged = 1.5;
 
 Estimate none(EstimateStatus status, std::string reason) { return {status, std::move(reason), {}, {}}; }
 

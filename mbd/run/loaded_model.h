@@ -33,8 +33,8 @@ struct LoadedModel {
 // With the catalogue of the programs: transformer/program.h.
 
 /// Reads and compiles a model file. `catalogue` defines the permitted kinds; the model refers to the kinds, not to the catalogue. Throws
-/// ModelError with all errors of the model, or if the trajectory would exceed `most_numbers` of [output]; FileError if the name cannot be
-/// used as a folder name.
+/// ModelError with all errors of the model, or if the trajectory would exceed `most_numbers` of [output]; FileError if the path
+/// contains control characters, because the folder of the results is named after the file.
 [[nodiscard]] std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std::vector<std::string>& overrides,
                                                             const RunCatalogue& catalogue);
 /// Completes, checks and compiles a model built in code. It has no text, so its results cannot be written to files. Throws ModelError.

@@ -45,7 +45,8 @@ struct AxisMeasure {
   }
 };
 
-/// Value and rate of a coordinate in the link's frame. The gradient is a unit vector of that frame, so half of its components are zero.
+/// Result of CoordinateMeasure<K> for a link, whose motion is that of body a relative to body b. In the axes of b the direction of the
+/// force is e_x or e_y. The reaction on b is added later for the whole link (add_link_force()), so a lever arm on b is not needed.
 template <int K, class S> struct CoordinateValue {
   S value{0}, rate{0};
   Pair<S> lever_a;

@@ -201,7 +201,7 @@ private:
     case Kind::store: a_.emit(names_.load, memory(i.second), reg(i.first)); break;
     case Kind::arithmetic: arithmetic(i); break;
     case Kind::condition: condition(i); break;
-    case Kind::sin_cos: find_sine(i); break;
+    case Kind::sin_cos: call_sin_cos(i); break;
     case Kind::call: call(i); break;
     case Kind::leave:
       a_.test(x86::ecx, x86::ecx);
@@ -254,7 +254,7 @@ private:
     take_arguments();
   }
 
-  void find_sine(const PlannedInstruction& i) {
+  void call_sin_cos(const PlannedInstruction& i) {
     a_.lea(x86::rdi, memory(i.second));
     a_.lea(x86::rsi, memory({OperandPlace::Kind::slot, 0, i.sine_slot}));
     a_.lea(x86::rdx, memory({OperandPlace::Kind::slot, 0, i.cosine_slot}));

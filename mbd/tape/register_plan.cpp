@@ -178,7 +178,7 @@ private:
       take_result(p, s);
     } else if (s.operation == sine || s.operation == cosine) {
       a.next = next_[p].a;
-      find_sine(p, s);
+      plan_sine_or_cosine(p, s);
     } else if (takes_two(s.operation)) {
       Value& b = values_[at(s.b)];
       a.next = next_[p].a;
@@ -409,7 +409,8 @@ private:
     store_known(order_[p]);
   }
 
-  void find_sine(std::size_t p, const TapeStep& s) {
+  // Plans the call that computes sine and cosine of one angle together. If the partner was planned before, nothing is left to compute.
+  void plan_sine_or_cosine(std::size_t p, const TapeStep& s) {
     Value& v = values_[at(order_[p])];
     if (v.home.kind != OperandPlace::Kind::nowhere) { // already computed with its partner
       v.next = next_[p].result;

@@ -9,15 +9,15 @@ namespace steplap::assess {
 
 namespace {
 
-// smallest number of rows to recognise a constant axis; with a coarse resolution fewer may be equal by chance
+// Smallest number of rows to recognise a constant axis. With a coarse resolution fewer rows may be equal by chance.
 constexpr std::size_t k_many = 100;
 constexpr std::size_t k_most_of_rest = 100000; // largest number of rows used for the reading at rest
 constexpr double k_long = 0.2;                 // shortest constant interval, s
 constexpr double k_moves = 0.05 * k_gravity;   // smallest range of another axis that counts as motion, m/s²
-// an axis that stays constant while another changes by this many of its converter's steps does not measure
+// An axis that stays constant while another axis changes by this many of the constant axis' converter steps does not measure.
 constexpr double k_coarse = 20.0;
-// steps; smallest fraction of another axis' motion that misalignment makes an axis read
-constexpr double k_few_steps = 4.0, k_coupling = 0.05;
+constexpr double k_few_steps = 4.0; // largest range of an insensitive axis, in steps of its converter
+constexpr double k_coupling = 0.05; // smallest fraction of another axis' motion that an axis reads because of misalignment
 
 } // namespace
 
@@ -35,31 +35,31 @@ void AxisWatch::put(double t, const double* a, std::size_t axes) {
       if (is_changed) {
         ++axis.changes;
         axis.step = std::min(axis.step, std::abs(a[i] - axis.value));
-        end_run(axis);
+        end_constant_interval(axis);
       }
       axis.value = a[i];
-      axis.now = {t, t, 0, 0.0};
+      axis.current = {t, t, 0, 0.0};
       std::copy(a, a + axes, axis.low.begin());
       std::copy(a, a + axes, axis.high.begin());
     }
-    axis.now.to = t;
-    ++axis.now.rows;
+    axis.current.to = t;
+    ++axis.current.rows;
     for (std::size_t k = 0; k < axes; ++k) {
       if (k == i) continue;
       axis.low[k] = std::min(axis.low[k], a[k]), axis.high[k] = std::max(axis.high[k], a[k]);
-      axis.now.others = std::max(axis.now.others, axis.high[k] - axis.low[k]);
+      axis.current.others = std::max(axis.current.others, axis.high[k] - axis.low[k]);
     }
   }
 }
 
-void AxisWatch::end_run(Axis& axis) {
-  const Run& run = axis.now;
-  if (run.rows >= k_many && run.to - run.from >= k_long && run.others > axis.moved.others) axis.moved = run;
+void AxisWatch::end_constant_interval(Axis& axis) {
+  const ConstantInterval& ended = axis.current;
+  if (ended.rows >= k_many && ended.to - ended.from >= k_long && ended.others > axis.suspect.others) axis.suspect = ended;
 }
 
 void AxisWatch::finish() {
   for (std::size_t i = 0; i < count_; ++i) {
-    end_run(axes_[i]);
+    end_constant_interval(axes_[i]);
     for (NoiseWatch& noise : axes_[i].noise) noise.finish();
   }
 }
@@ -81,8 +81,8 @@ double AxisWatch::others_range(std::size_t axis) const {
 
 std::optional<AxisWatch::DeadInterval> AxisWatch::stuck(std::size_t index) const {
   const Axis& axis = axes_[index];
-  if (axis.changes == 0) return rows_ >= k_many ? std::optional(DeadInterval{axis.now.from, axis.now.to}) : std::nullopt;
-  if (axis.moved.others >= std::max(k_moves, k_coarse * axis.step)) return DeadInterval{axis.moved.from, axis.moved.to};
+  if (axis.changes == 0) return rows_ >= k_many ? std::optional(DeadInterval{axis.current.from, axis.current.to}) : std::nullopt;
+  if (axis.suspect.others >= std::max(k_moves, k_coarse * axis.step)) return DeadInterval{axis.suspect.from, axis.suspect.to};
   for (const NoiseWatch& noise : axis.noise) {
     const auto silence = noise.silence(axis.step);
     if (!silence) continue;

@@ -30,20 +30,22 @@ public:
   [[nodiscard]] bool is_insensitive(std::size_t axis) const;
 
 private:
-  struct Run {
-    double from = 0.0, to = 0.0;
-    std::size_t rows = 0;
-    double others = 0.0; ///< largest change of another axis while this one was constant, m/s²
+  /// An interval in which the value of one axis is constant.
+  struct ConstantInterval {
+    double from = 0.0, to = 0.0; ///< begin and end of the interval, s
+    std::size_t rows = 0;        ///< number of samples
+    double others = 0.0;         ///< largest change of another axis while this one was constant, m/s²
   };
   struct Axis {
     double value = 0.0, step = std::numeric_limits<double>::infinity(); ///< present value and smallest change of the value, m/s²
     double least = std::numeric_limits<double>::infinity(), greatest = -std::numeric_limits<double>::infinity();
     std::size_t changes = 0;
-    Run now, moved;                      ///< the current constant interval; the long one in which other axes changed most
-    std::array<double, 3> low{}, high{}; ///< range of each axis during the constant interval, m/s²
+    ConstantInterval current;            ///< the interval that contains the last sample
+    ConstantInterval suspect;            ///< the sufficiently long interval in which another axis changed most
+    std::array<double, 3> low{}, high{}; ///< range of each axis during `current`, m/s²
     std::array<NoiseWatch, 2> noise{NoiseWatch(1), NoiseWatch(8)};
   };
-  static void end_run(Axis& axis);
+  static void end_constant_interval(Axis& axis);
   [[nodiscard]] double others_range(std::size_t axis) const;
 
   std::array<Axis, 3> axes_;

@@ -236,7 +236,7 @@ Reason judge_criterion(const DecisionCriterion& c, const Assessment& a, const Vo
 }
 
 // Judges frictions shared by two planes. Friction is one vector, but each model judges only the component in its own plane.
-Reason judge_planes(const VoyageSummary& s) {
+Reason judge_shared_friction(const VoyageSummary& s) {
   const char* const name = "friction of several planes";
   const char* const source = "rules of this program";
   if (s.planes_slip.empty())
@@ -267,7 +267,7 @@ void add_rules_of_program(const Assessment& a, const VoyageSummary& s, std::vect
     if (!a.is_accepted(missing.item))
       open("evidence",
            missing.reason + " " + missing.remedy + " (accept " + name_of(missing.item) + " puts the responsibility on the user.)");
-  if (!a.shared.empty()) reasons.push_back(judge_planes(s));
+  if (!a.shared.empty()) reasons.push_back(judge_shared_friction(s));
   if (!a.recorders.empty()) reasons.push_back(judge_second(a.recorders.back()));
   if (!s.unknown.empty()) open("runs to trust", "Not every event could be judged: " + s.unknown);
 }

@@ -41,22 +41,22 @@ double bound_of_chance(double share, double q, double rows) {
 void NoiseWatch::put(double t, double value) {
   bool is_repeat = false;
   for (std::size_t k = 1; k <= std::min(near_, rows_); ++k) is_repeat |= value_before(k) == value;
-  if (is_open_) block_ = {};
+  if (is_silent_) block_ = {};
   else if (rows_ >= 2) take_block(value);
   times_[rows_ % k_kept] = t, values_[rows_ % k_kept] = value;
   history_ = history_ << 1U | (is_repeat ? 1U : 0U);
   ++rows_;
   repeats_ += is_repeat;
   if (repeats_in(history_, k_kept) >= k_dull) {
-    if (!is_open_) open();
+    if (!is_silent_) begin_silence();
     now_.to = t;
     now_.rows += 1 + static_cast<std::size_t>(rows_after_);
     now_.repeats += is_repeat;
     now_.least = std::min(now_.least, value), now_.greatest = std::max(now_.greatest, value);
     rows_after_ = 0;
-  } else if (is_open_) {
+  } else if (is_silent_) {
     now_.repeats += is_repeat;
-    if (++rows_after_ == k_side) close(repeats_in(history_, k_side));
+    if (++rows_after_ == k_side) end_silence(repeats_in(history_, k_side));
   }
 }
 
@@ -80,7 +80,7 @@ void NoiseWatch::take_block(double value) {
 }
 
 // Starts an interval without noise at the oldest row that is still in memory.
-void NoiseWatch::open() {
+void NoiseWatch::begin_silence() {
   const std::size_t kept = std::min(rows_, k_kept);
   now_ = {times_[(rows_ - kept) % k_kept],
           0.0,
@@ -90,17 +90,17 @@ void NoiseWatch::open() {
           static_cast<std::size_t>(repeats_in(history_ >> 1U, k_kept - 1))};
   repeats_before_ = repeats_in(history_ >> k_kept, k_side);
   rows_after_ = 0;
-  is_open_ = true;
+  is_silent_ = true;
 }
 
-void NoiseWatch::close(int repeats_after) {
+void NoiseWatch::end_silence(int repeats_after) {
   all_silent_ += now_.rows;
   if (std::max(repeats_before_, repeats_after) <= k_often * k_side && now_.rows > longest_.rows) longest_ = now_;
-  is_open_ = false;
+  is_silent_ = false;
 }
 
 void NoiseWatch::finish() {
-  if (is_open_) close(repeats_in(history_, rows_after_));
+  if (is_silent_) end_silence(repeats_in(history_, rows_after_));
 }
 
 std::optional<NoiseWatch::Silence> NoiseWatch::silence(double step) const {

@@ -39,8 +39,8 @@ public:
 private:
   [[nodiscard]] double value_before(std::size_t rows) const { return values_[(rows_ - rows) % k_kept]; }
   void take_block(double value);
-  void open();
-  void close(int repeats_after);
+  void begin_silence();
+  void end_silence(int repeats_after);
   static constexpr std::size_t k_kept = 16;
   std::size_t near_;
   std::array<double, k_kept> times_{}, values_{}; ///< times and values of the last rows
@@ -53,7 +53,7 @@ private:
   Block block_;
   std::vector<double> deviations_; ///< standard deviations of every `stride_`-th white block
   std::size_t stride_ = 1, blocks_ = 0;
-  bool is_open_ = false;
+  bool is_silent_ = false; ///< true while `now_` is an interval without noise
   int repeats_before_ = 0, rows_after_ = 0;
   Silence now_, longest_;
 };

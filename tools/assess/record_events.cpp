@@ -249,20 +249,20 @@ RecordEvents read_without_events(const std::string& file, const EventReading& re
   return record;
 }
 
-bool find_events(const EventReading& reading, const EventRules& rules, double longest, RecordEvents& record) {
+bool find_events(const EventReading& reading, const EventRules& rules, double longest_total, RecordEvents& record) {
   record.events.clear();
   Conditioning conditioning = conditioning_of(reading);
   if (reading.rest) conditioning.offset = rest_of(record.file, reading).means();
   double sum = 0.0;
   ShockFinder finder(rules, [&](const ShockEvent& event, const Window& window) {
     sum += event.end - event.begin;
-    if (sum > longest) return;
+    if (sum > longest_total) return;
     const auto is_beyond = [&](const AxisEvent& axis) { return std::abs(axis.peak) > record.rules.threshold; };
     record.events.push_back({event, window, std::none_of(event.axes.begin(), event.axes.end(), is_beyond)});
   });
   WithoutGravity first(conditioning, reading, finder);
   static_cast<void>(read_signal(record.file, reading, first));
-  if (sum <= longest) return true;
+  if (sum <= longest_total) return true;
   record.events.clear();
   return false;
 }

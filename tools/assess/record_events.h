@@ -76,8 +76,8 @@ struct RecordEvents {
 /// reading at rest exceeds the threshold, or if a list of peaks lacks data for pulses.
 [[nodiscard]] RecordEvents read_without_events(const std::string& file, const EventReading& reading);
 /// Reads a waveform file again and fills its events according to `rules`. Returns false, without events, if their total duration would
-/// exceed `longest`, s.
-[[nodiscard]] bool find_events(const EventReading& reading, const EventRules& rules, double longest, RecordEvents& record);
+/// exceed `longest_total`, s.
+[[nodiscard]] bool find_events(const EventReading& reading, const EventRules& rules, double longest_total, RecordEvents& record);
 /// Reads a file and its events, with the rules in `reading`.
 [[nodiscard]] RecordEvents read_events(const std::string& file, const EventReading& reading);
 

@@ -20,8 +20,8 @@ namespace steplap::assess {
 namespace {
 
 constexpr double k_close = 1e-6;       // relative accuracy of a margin, from the accuracy of equilibria
-constexpr double k_same_forces = 5e-3; // difference by which forces of two paths of the same load are the same
-constexpr double k_just_below = 1e-3;  // relative distance below the first limit at which the other loading paths are computed
+constexpr double k_same_forces = 5e-3; // difference up to which forces are the same after two loading paths to the same load
+constexpr double k_just_below = 1e-3;  // the path from the opposite pull ends this fraction below the acceleration of the first limit
 
 // Returns true for channels that have a meaning at rest: those whose unit contains no rate.
 bool is_of_rest(const std::string& unit) { return unit.find("/s") == std::string::npos; }

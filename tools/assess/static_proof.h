@@ -64,7 +64,8 @@ struct StaticCase {
 struct StaticDirection {
   double angle = 0.0; ///< direction of the pull, rad, counter-clockwise from x
   StaticRay ray;
-  bool is_unique = true; ///< true if the load also has an equilibrium along the other paths, just below the first limit
+  /// True if the load just below the first limit also has an equilibrium when it grows from the opposite pull, not from zero.
+  bool is_unique = true;
 };
 
 /// Results of a static proof for one model.

@@ -102,15 +102,15 @@ std::string text_of_changes(const ExploredModel& model, const ExploredValues& va
   const std::string alone = load_model(model.path(), all)->text;
   const Node whole = parse_toml(alone, &model.path());
   Node changes;
-  const fs::path file(model.path());
-  changes.children.push_back(text_node("extends", file.filename().string()));
+  const fs::path model_file(model.path());
+  changes.children.push_back(text_node("extends", model_file.filename().string()));
   bool is_whole = true;
   for (const std::string& assignment : all) is_whole = copy_key(whole, path_in(assignment), changes) && is_whole;
   const std::string text =
-      "# Saved by steplap explore: what was changed of " + file.filename().string() + ".\n" + k_format_line + write_toml(changes);
+      "# Saved by steplap explore: what was changed of " + model_file.filename().string() + ".\n" + k_format_line + write_toml(changes);
   const Model wanted = read_given_model(model.path(), program_catalogue(), all);
-  if (is_whole && gives_model(text, (file.parent_path() / "changes.toml").string(), wanted)) return text;
-  return "# Saved by steplap explore. What was changed lies in parts of " + file.filename().string() +
+  if (is_whole && gives_model(text, (model_file.parent_path() / "changes.toml").string(), wanted)) return text;
+  return "# Saved by steplap explore. What was changed lies in parts of " + model_file.filename().string() +
          ", where a file that extends it does not reach:\n# this one stands alone.\n" + alone;
 }
 

@@ -98,8 +98,10 @@ bool try_steps(const LeastSquaresProblem& problem, const Linear& linear, double&
 } // namespace
 
 LeastSquaresMinimum minimise(const LeastSquaresProblem& problem, const VectorXd& start, const VectorXd& residuals) {
-  constexpr double k_close = 1e-8;  // tolerance of the decrease, relative to the variance: the minimum is within 1e-4 standard deviations
-  constexpr double k_stuck = 1e-3;  // as above, if no step decreases the sum: difference quotients are not more accurate
+  // The search has converged if the predicted further decrease of the sum, relative to the variance, is at most k_close: the minimum is
+  // then within 1e-4 standard deviations. If no step decreases the sum, a predicted decrease of k_stuck is accepted as well, because the
+  // difference quotients from which it is predicted are not more accurate.
+  constexpr double k_close = 1e-8, k_stuck = 1e-3;
   constexpr double k_widest = 1e12; // largest damping factor
   LeastSquaresMinimum m;
   m.at = start;

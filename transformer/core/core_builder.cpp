@@ -44,8 +44,8 @@ public:
     }
     check_yokes();
     stop_if_wrong();
-    draw_limbs(geometry);
-    draw_active_part(geometry);
+    set_limb_outlines(geometry);
+    set_active_part_outline(geometry);
   }
 
 private:
@@ -85,8 +85,8 @@ private:
   void check_steel(const Body& body, const char* field, double given, double steel, const std::string& unit);
 
   [[nodiscard]] std::vector<Vec2> limb_corners(std::size_t i, const CoreGeometry& geometry) const;
-  void draw_limbs(const CoreGeometry& geometry);
-  void draw_active_part(const CoreGeometry& geometry);
+  void set_limb_outlines(const CoreGeometry& geometry);
+  void set_active_part_outline(const CoreGeometry& geometry);
 
   const Core& core_;
   Model& model_;
@@ -383,7 +383,8 @@ std::vector<Vec2> CoreBuilder::limb_corners(std::size_t i, const CoreGeometry& g
   return corners;
 }
 
-void CoreBuilder::draw_limbs(const CoreGeometry& geometry) {
+// Sets the outlines of all limbs for which the model gives none.
+void CoreBuilder::set_limb_outlines(const CoreGeometry& geometry) {
   const double turn = active_part().angle;
   for (std::size_t i = 0; i < limbs_.size(); ++i)
     for (Body& body : model_.bodies) {
@@ -393,7 +394,7 @@ void CoreBuilder::draw_limbs(const CoreGeometry& geometry) {
 }
 
 // Sets the outline of the active part: the area between the outer limbs, with yokes and windings.
-void CoreBuilder::draw_active_part(const CoreGeometry& geometry) {
+void CoreBuilder::set_active_part_outline(const CoreGeometry& geometry) {
   const Body* rear = nullptr;
   const Body* front = nullptr;
   std::vector<Vec2> at_rear, at_front;

@@ -374,9 +374,9 @@ void DimensionCheck::check_cut(std::size_t packet, bool is_middle, double lowest
   const std::string what = core_.is_counted() ? "an overlap of " + metres(highest - lowest)
                                               : "a book that reaches " + metres(highest - lowest) + " across the mitre";
   const std::string field = core_.is_counted() ? "overlap" : "step_pitch";
-  if (highest >= least_shift(m))
+  if (highest >= cut_distance_limit(m))
     return error(what + " is wider than the sheets: where a limb of " + metres(m.limb_width) + " and a yoke of " + metres(m.yoke_height) +
-                     " cross there are " + metres(least_shift(m)) + " on either side of the mitre",
+                     " cross there are " + metres(cut_distance_limit(m)) + " on either side of the mitre",
                  field);
   if (!is_middle) return;
   const auto [s, c] = portable::sin_cos(*m.angle);

@@ -95,8 +95,9 @@ std::vector<Vec2> yoke_half(const Mitre& m, double side, double level, double q,
   return before(strip, notch_frame(m, -side, level), q);
 }
 
-// Returns the distance of the mitre to the nearer of the two corners of the rectangle that are not on it, m.
-double least_shift(const Mitre& m) {
+// The line at q crosses the rectangle if a corner of the rectangle lies beyond it, so the limit is the distance of the nearer of the two
+// corners that are not on the mitre.
+double cut_distance_limit(const Mitre& m) {
   const CornerFrame f = corner_frame(m, 1.0, 1.0);
   const Vec2 below(m.limb_width, 0.0), above(0.0, m.yoke_height);
   return std::min(f.across.dot(below), -f.across.dot(above));

@@ -61,7 +61,8 @@ struct CornerFrame {
 /// Returns the half of a notched yoke on this side of a middle limb's axis.
 [[nodiscard]] std::vector<Vec2> yoke_half(const Mitre& mitre, double side, double level, double q, double reach);
 
-/// Returns the largest distance of the line at q from the mitre for which it stays in the rectangle common to limb and yoke, m.
-[[nodiscard]] double least_shift(const Mitre& mitre);
+/// Returns the upper limit of |q| for cuts, m: on either side of the mitre, a parallel line at a smaller distance crosses the rectangle
+/// common to limb and yoke.
+[[nodiscard]] double cut_distance_limit(const Mitre& mitre);
 
 } // namespace steplap

@@ -85,6 +85,7 @@ std::string phone() {
   return text;
 }
 
+// Returns a file as exported from a PALT recorder: times in days of a spreadsheet, rows equal to the previous one left out.
 std::string palt() {
   std::string text = "PALT export\nDate,Sample,X [g],Y [g],Z [g]\n", last;
   add_rows(text, 128.0, [&last](int i, double t, const auto& a) -> std::string {
