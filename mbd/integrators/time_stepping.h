@@ -22,9 +22,11 @@
 //
 // A step is accepted only if friction and normal forces have converged and contact modes agree with its end. Otherwise it is halved, down
 // to a millionth. (Example: the damper of a closing contact makes the force jump; if the step is long compared with m/c neither mode is
-// consistent.) As an integrator (moreau.cpp) it lets contacts rebound that close with a velocity: in an impact the mean force of a step is
-// that of energy (contact_impacts.h). A contact for which neither mode is consistent, and which would close late in the step, closes at its end instead. If halving
-// does not help the run stops.
+// consistent.) A contact for which neither mode is consistent, and which would close late in the step, closes at its end instead. If
+// halving does not help the run stops.
+//
+// As an integrator (moreau.cpp) time stepping lets contacts rebound that close with a velocity: the mean force of a step in an impact is the
+// one whose work is the change of the stored energy (contact_impacts.h).
 //
 // A friction element that sticks at the end of a step may have slipped within it, because means of loads and the clamping pressure at the
 // end do not show peaks. Such steps are halved, too (inner_slips.cpp). One that lands with a velocity along its row and sticks at the end

@@ -1,4 +1,5 @@
-// Estimates probabilities by sampling: Monte Carlo, importance sampling at design points, subset simulation and kriging. Each returns a confidence interval and a status.
+// Estimates probabilities by sampling: Monte Carlo, importance sampling at design points, subset simulation and kriging. Each returns a
+// confidence interval and a status.
 #pragma once
 
 #include "tools/study/design_points.h"
