@@ -19,12 +19,12 @@ namespace steplap {
 class OperandCurves {
 public:
   static constexpr int k_degree = k_enclosure_degree; ///< degree of the polynomials
-  static constexpr int k_nodes = k_degree + 1;
-  using Coefficients = std::array<double, k_nodes>; ///< of 1, s, s² …
+  static constexpr int k_nodes = k_degree + 1;        ///< number of samples that determine a polynomial
+  using Coefficients = std::array<double, k_nodes>;   ///< of 1, s, s² …
 
   /// An operand over one panel; s goes from −1 to 1.
   struct Curve {
-    Coefficients c{};
+    Coefficients c{};          ///< coefficients of the polynomial
     double error = 0.0;        ///< error bound of the polynomial
     double floor = 0.0;        ///< part of `error` due to rounding, which halving does not reduce
     Interval hull;             ///< enclosure of the curve by its samples, if it is not smooth

@@ -108,7 +108,7 @@ bool is_refused_text(const toml::table& model, const std::string& path) {
     (void)load_model_text(text.str(), path, {});
   } catch (const ModelError&) {
     return true;
-  }
+  } catch (const NumericalFailure&) {} // joints that cannot be assembled
   return false;
 }
 

@@ -64,7 +64,7 @@ inline std::vector<KnownCase> known_cases() {
        9.90603e-4,
        0.0,
        {"monte_carlo", "subset"}},
-      {"RP77", {normal(10, 0.5), standard, normal(4, 1)}, "x3 <= 5 ? x1 - x2 - x3 : x3 - x2", 2.69128e-7, 0.0, {"subset"}},
+      {"RP77", {normal(10, 0.5), standard, normal(4, 1)}, "x3 <= 5 ? x1 - x2 - x3 : x3 - x2", 2.69128e-7, 0.0, {"importance_sampling"}},
       {"RP89", {standard, standard}, "min(8 - x1^2 - x2, 6 - x1/5 - x2)", 5.4713e-3, 0.0, {"monte_carlo", "importance_sampling"}},
       {"RP107", ten, "5*sqrt(10) - sum(x1,x2,x3,x4,x5,x6,x7,x8,x9,x10)", 2.866516e-7, 5.0, {"importance_sampling", "subset"}},
       {"RP111", {standard, standard}, "12.5 - abs(x1*x2)", 8.035e-7, 5.0, {"importance_sampling"}},
