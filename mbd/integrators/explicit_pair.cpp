@@ -145,7 +145,8 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
     else if (is_end_accurate && !try_finish_step(dynamics)) h = rejected(k_shorter);
     else if (is_end_accurate && accept_inside(dynamics, h, error, is_retry, inside)) return;
     else if (inside <= 1.0 && passage.needs_other_stages()) h = rejected(SingularPassage::k_shorter_across);
-    else refuse_shorter_than_rounding(h = rejected(shrink_factor(std::max(error, inside))));
+    else h = rejected(shrink_factor(std::max(error, inside)));
+    refuse_shorter_than_rounding(h); // for every reason: an end that no projection reaches would shorten the step for ever
   }
 }
 

@@ -133,7 +133,7 @@ double Integrator::place_accuracy(const Dynamics& dynamics) const {
 bool Integrator::end_at(Dynamics&, double) { return false; }
 
 void Integrator::refuse_shorter_than_rounding(double h) const {
-  if (h < 16.0 * std::numeric_limits<double>::epsilon() * rounding_time_scale(t0_, system_))
+  if (!(h >= 16.0 * std::numeric_limits<double>::epsilon() * rounding_time_scale(t0_, system_))) // also NaN
     throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
                            " s: the motion becomes singular there, or the tolerance is too small");
 }

@@ -1,5 +1,6 @@
 // Numbers that no table can mean, and sizes that no machine holds, are errors of the model or are computed with: they never end the program.
 #include "mbd/run/loaded_model.h"
+#include "mbd/run/run.h"
 #include "transformer/program.h"
 
 #include <doctest/doctest.h>
@@ -175,4 +176,12 @@ TEST_CASE("a core is not completed from a neighbour whose numbers are out of ran
   REQUIRE_FALSE(is_refused(model, "core.wound limbs.sheets_per_layer=1"));
   for (const char* const field : {"sheets_per_layer", "steps", "sheet_thickness"})
     CHECK(is_refused(model, std::string("core.wound limbs.") + field + "=0"));
+}
+
+// Accelerations of 1e320 m/s² are infinite, and so the step is NaN: no comparison with a smallest step refused it.
+TEST_CASE("a run whose rates are beyond all numbers ends") {
+  const auto loaded = load_model(STEPLAP_SOURCE "/models/benchmarks/double_pendulum.toml", {"body.lower.mass=1e-320"});
+  const Run run = run_model(loaded);
+  REQUIRE(run.failure);
+  CHECK(has(run.failure->text, "step size fell to"));
 }
