@@ -133,7 +133,8 @@ double Integrator::place_accuracy(const Dynamics& dynamics) const {
 bool Integrator::end_at(Dynamics&, double) { return false; }
 
 void Integrator::refuse_shorter_than_rounding(double h) const {
-  if (!(h >= 16.0 * std::numeric_limits<double>::epsilon() * rounding_time_scale(t0_, system_))) // also NaN
+  const bool is_positive = h > 0.0; // rates beyond all numbers give zero or NaN
+  if (!is_positive || h < 16.0 * std::numeric_limits<double>::epsilon() * rounding_time_scale(t0_, system_))
     throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
                            " s: the motion becomes singular there, or the tolerance is too small");
 }
