@@ -73,6 +73,7 @@ public:
   void register_links(LinkTable& links) override {
     for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
+  [[nodiscard]] const GapSource* gap_source() const override { return this; }
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const override {
     for (const ElementData& entry : entries) {
       out.push_back(gap_bounds(entry.gap, entry.law.offset, motion[entry.a], motion[entry.b]));

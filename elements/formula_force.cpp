@@ -338,6 +338,7 @@ formula = "-'1 N m s' * rate"
     k.holds<T>();
     k.compile = compile_formula_force;
     // A formula without names is a constant load.
+    k.acts_from_outside = true;
     k.has_constant_load = [](const Element& element) {
       return Formula(static_cast<const T&>(element).formula, "formula", {}).names().empty();
     };

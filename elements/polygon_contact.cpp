@@ -128,6 +128,7 @@ public:
   }
   // Adds the gap: the distance of the other body from the face that separates them is a lower bound of all point distances. A half-plane
   // has no corners, so its reach extends to its points near the other body.
+  [[nodiscard]] const GapSource* gap_source() const override { return this; }
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const override {
     for (const ElementData& entry : entries) {
       const Placed<double, Motion<double>> placed(*entry.outlines, motion[entry.a], motion[entry.b]);

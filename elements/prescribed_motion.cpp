@@ -133,6 +133,7 @@ signal = 'stroke'
 )";
     k.holds<T>();
     k.compile = compile_prescribed;
+    k.acts_from_outside = true;
     return k;
   }();
   return kind;

@@ -98,6 +98,7 @@ public:
   void mark_bodies(std::vector<char>& is_used) const override;
   void register_turns(TurnTable& turns) const override;
   void register_links(LinkTable& links) override;
+  [[nodiscard]] const GapSource* gap_source() const override { return this; }
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const override;
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;

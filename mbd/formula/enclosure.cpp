@@ -449,10 +449,10 @@ template <int N> Enclosure<N> EnclosingNumbers<N>::finite(const Value& a) {
 }
 
 template struct Enclosure<0>;
-template struct Enclosure<4>;
+template struct Enclosure<k_quartic>;
 template struct Enclosure<k_enclosure_degree>;
 template struct EnclosingNumbers<0>;
-template struct EnclosingNumbers<4>;
+template struct EnclosingNumbers<k_quartic>;
 template struct EnclosingNumbers<k_enclosure_degree>;
 template double place_of_largest<k_enclosure_degree>(const Enclosure<k_enclosure_degree>&, double);
 

@@ -74,7 +74,9 @@ template <int Degree> struct EnclosingNumbers {
 };
 
 inline constexpr int k_enclosure_degree = 8;
+inline constexpr int k_quartic = 4; ///< degree of the polynomials through five samples of a step
 extern template struct EnclosingNumbers<0>;
+extern template struct EnclosingNumbers<k_quartic>;
 extern template struct EnclosingNumbers<k_enclosure_degree>;
 
 } // namespace steplap

@@ -23,7 +23,7 @@ ContactImpacts::ContactImpacts(const System& system) {
   // Own states follow the motion of coordinates that move with the velocity at the end of a step.
   if (system.inner_count() > 0) return;
   for (std::size_t g = 0; g < system.groups.size(); ++g)
-    if (const auto* const gaps = dynamic_cast<const GapSource*>(system.groups[g].get())) sources_.push_back({gaps, g, {}});
+    if (const GapSource* const gaps = system.groups[g]->gap_source()) sources_.push_back({gaps, g, {}});
   for (std::size_t u = 0; u < system.units.size(); ++u)
     for (Source& source : sources_)
       if (system.units[u].group == system.groups[source.group].get()) {
@@ -70,7 +70,6 @@ void ContactImpacts::end_pass(Dynamics& dynamics) {
 }
 
 void ContactImpacts::land(std::size_t unit, double rate0, double rate1) {
-  if (impact_.empty() || impact_[unit].is_refused || !(gap0_[unit] > 0.0) || !(gap1_[unit] < 0.0)) return;
   if (!(-rate0 > k_steps_of_rest * std::abs(rate1 - rate0))) return; // also for NaN: rate unknown
   Impact& impact = impact_[unit];
   impact.is_on = impact.lands = true;

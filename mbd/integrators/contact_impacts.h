@@ -30,6 +30,9 @@ namespace steplap {
 /// Impacts of one system, in the part of a step that is being computed.
 class ContactImpacts {
 public:
+  /// Resolves no impacts: all functions do nothing.
+  ContactImpacts() = default;
+  /// Resolves the impacts of all contacts of `system`; none if it has inner states.
   explicit ContactImpacts(const System& system);
 
   /// Begins a part. Precondition: the last evaluation of `dynamics` was at `start`.
@@ -38,8 +41,12 @@ public:
   [[nodiscard]] bool contains(std::size_t unit) const { return !impact_.empty() && impact_[unit].is_on; }
   /// Reads the gaps at the end of a pass, at the last evaluation of `dynamics`.
   void end_pass(Dynamics& dynamics);
-  /// Makes an impact of an open contact that closed in the pass, unless it closes too slowly. `rate0` and `rate1`: rates of the gap at the
-  /// ends of the part, m/s.
+  /// Returns true if the contact was apart at the start of the part and has closed in the pass.
+  [[nodiscard]] bool has_closed(std::size_t unit) const {
+    return !impact_.empty() && !impact_[unit].is_refused && gap0_[unit] > 0.0 && gap1_[unit] < 0.0;
+  }
+  /// Makes an impact of a contact that has_closed(), unless it closes too slowly. `rate0` and `rate1`: rates of the gap at the ends of the
+  /// part, m/s.
   void land(std::size_t unit, double rate0, double rate1);
   /// Adapts the share of an impact to the end of the pass, which leaves the contact in `mode`, or ends the impact if none is possible.
   /// Returns true if another pass is necessary.

@@ -73,7 +73,7 @@ bool TimeStepping::note_sticking(Dynamics& dynamics, double t1) {
     now.usage = usage_of(dynamics.evaluation(), part);
     if (start_.friction[part.friction].phase == FrictionPhase::slip || slides_at_landing(part)) continue; // it has just come to rest
     const RowSpec& row = *system_.frictions[part.friction].friction->rows(dynamics.evaluation().friction[part.friction]);
-    if (impacts_ && impacts_->acts_between(row.a, row.b)) continue; // its normal force within an impact is known by its mean only
+    if (impacts_.acts_between(row.a, row.b)) continue; // its normal force within an impact is known by its mean only
     const bool is_known = before.t == start_.t;
     now.change = is_known ? std::abs(now.usage - before.usage) : 1.0;
     const double reach = k_reach * std::max(now.change, before.change);

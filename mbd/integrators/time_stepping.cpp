@@ -101,7 +101,7 @@ void TimeStepping::step(Dynamics& dynamics, State& state, double t1, double tole
       trouble.what = "constraints";
     }
     if (!trouble.what) {
-      if (impacts_) impacts_->note_end();
+      impacts_.note_end();
       const bool is_near = note_sticking(dynamics, end);
       finish_phases(dynamics, state, h);
       if (is_near && std::isnan(held_time_) && h > k_shortest_searched * longest_ && slips_inside(dynamics, end, tolerance))
@@ -110,7 +110,7 @@ void TimeStepping::step(Dynamics& dynamics, State& state, double t1, double tole
     }
     if (!trouble.what) {
       std::swap(sticking_, sticking_now_);
-      if (impacts_) impacts_->commit();
+      impacts_.commit();
       if (observe) observe(start_, state);
       if (halvings > 0 && !is_last) {
         part = 2.0 * h;
@@ -187,18 +187,18 @@ TimeStepping::StepFailure TimeStepping::settle_forces(Dynamics& dynamics, double
 // impact has to be adapted; −1 if there is none.
 int TimeStepping::changed_unit(Dynamics& dynamics, State& state) {
   int first = -1;
-  if (impacts_) impacts_->end_pass(dynamics);
+  impacts_.end_pass(dynamics);
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];
     const UnitMode mode = unit.group->initial_mode(unit.index, dynamics.evaluation());
-    if (impacts_ && impacts_->contains(u)) {
-      if (impacts_->refine(u, mode) && first < 0) first = static_cast<int>(u);
-      if (!impacts_->contains(u)) state.mode[u] = mode;
+    if (impacts_.contains(u)) {
+      if (impacts_.refine(u, mode) && first < 0) first = static_cast<int>(u);
+      if (!impacts_.contains(u)) state.mode[u] = mode;
       continue;
     }
     if (mode != state.mode[u] && first < 0) first = static_cast<int>(u);
-    if (impacts_ && start_.mode[u] == k_contact_open && state.mode[u] == k_contact_open && mode == k_contact_pressed)
-      impacts_->land(u, start_event_derivative_[unit.first_event], dynamics.event_derivative()[unit.first_event]);
+    if (impacts_.has_closed(u) && start_.mode[u] == k_contact_open && state.mode[u] == k_contact_open && mode == k_contact_pressed)
+      impacts_.land(u, start_event_derivative_[unit.first_event], dynamics.event_derivative()[unit.first_event]);
     state.mode[u] = mode;
   }
   return first;
@@ -218,7 +218,7 @@ bool TimeStepping::repeats_modes(const State& state) {
 bool TimeStepping::only_closes_late(const Dynamics& dynamics, const State& state) const {
   const UnitMode* const used = &modes_made_[modes_made_.size() - state.mode.size()];
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
-    if (state.mode[u] == used[u] || (impacts_ && impacts_->contains(u))) continue;
+    if (state.mode[u] == used[u] || impacts_.contains(u)) continue;
     const auto gap = std::min_element(dynamics.event_value().begin() + system_.units[u].first_event,
                                       dynamics.event_value().begin() + system_.units[u].first_event + system_.units[u].event_count);
     const double at_start = start_event_value_[gap - dynamics.event_value().begin()];
@@ -256,33 +256,30 @@ TimeStepping::StepFailure TimeStepping::try_part(Dynamics& dynamics, State& stat
   evaluate(dynamics, start_.t, y0_.data());
   start_event_value_ = dynamics.event_value();
   start_event_derivative_ = dynamics.event_derivative();
-  if (impacts_) impacts_->begin_part(dynamics, start_);
+  impacts_.begin_part(dynamics, start_);
   collect_friction(dynamics, state);
   dynamics.set_state(state);
   StepFailure trouble;
   modes_made_.clear();
   int repeated = 0;
-  Linearization::PartsHook weigh;
-  if (impacts_)
-    weigh = [this](const Evaluation& e, std::vector<PairJacobian>& parts, const std::vector<std::size_t>& first) {
-      impacts_->weigh(e, parts, first);
-    };
+  const Linearization::PartsHook weigh = [this](const Evaluation& e, std::vector<PairJacobian>& parts,
+                                                const std::vector<std::size_t>& first) { impacts_.weigh(e, parts, first); };
   bool is_adapted = false; // only shares of impacts have changed in the last pass
   for (int pass = 0; pass < k_max_mode_passes; ++pass) {
-    if (impacts_) impacts_->set_force_modes(state.mode);
+    impacts_.set_force_modes(state.mode);
     if (repeats_modes(state) && !is_adapted && ++repeated > k_passes_of_cycle) break;
     {
       const Means means(dynamics, time_of_loads(glance_ > 0.0 ? t1 - glance_ : start_.t));
       linearization_.evaluate(dynamics, time_of_loads(t1), y0_.data(), weigh);
       stages_.set(linearization_, dynamics.layout());
-      if (impacts_) impacts_->set_mean_motion(dynamics.layout(), stages_);
+      impacts_.set_mean_motion(dynamics.layout(), stages_);
       if (!stages_.factor(h)) return {"its equations are singular"};
       evaluate(dynamics, t1, y0_.data());
     }
     std::copy(dy_.begin(), dy_.begin() + 2 * n_ + dynamics.inner_count(), right_.begin());
     stages_.solve(right_.data(), free_.data());
-    if (impacts_) impacts_->add_forces(dynamics.layout(), dynamics.motion(), stages_, free_.data());
-    if (impacts_) impacts_->set_friction_modes(state.mode);
+    impacts_.add_forces(dynamics.layout(), dynamics.motion(), stages_, free_.data());
+    impacts_.set_friction_modes(state.mode);
     respond(dynamics, h);
     trouble = settle_forces(dynamics, t1, tolerance);
     if (!trouble.what)
@@ -290,11 +287,11 @@ TimeStepping::StepFailure TimeStepping::try_part(Dynamics& dynamics, State& stat
         if (!std::isfinite(y1_[i])) trouble.what = "the motion became infinite";
     if (trouble.what) return trouble;
     const int unit = changed_unit(dynamics, state);
-    is_adapted = unit >= 0 && impacts_ && impacts_->contains(static_cast<std::size_t>(unit));
+    is_adapted = unit >= 0 && impacts_.contains(static_cast<std::size_t>(unit));
     if (unit < 0 || (repeated > 0 && only_closes_late(dynamics, state))) {
       if (const int passed = passed_unit(dynamics, state, h); passed >= 0)
         return {"the gap", system_.units[passed].element, dynamics.event_value()[system_.units[passed].first_event], " m"};
-      if (impacts_) impacts_->set_end_modes(state.mode);
+      impacts_.set_end_modes(state.mode);
       refuse_beyond_laws(system_, dynamics, state);
       dynamics.unpack(t1, y1_.data(), state);
       return {};

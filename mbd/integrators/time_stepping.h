@@ -41,7 +41,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <memory>
 
 namespace steplap {
 
@@ -65,7 +64,7 @@ public:
     keeps_sliding_ = keeps_sliding;
   }
   /// Lets contacts rebound that close with a velocity (contact_impacts.h). Without this call their vibrations are damped as all others.
-  void resolve_impacts() { impacts_ = std::make_unique<ContactImpacts>(system_); }
+  void resolve_impacts() { impacts_ = ContactImpacts(system_); }
   /// Returns the largest constraint residuals before projection in the last step.
   [[nodiscard]] const Residual& residual() const { return residual_; }
   /// Returns the number of parts added by halving, in all steps so far.
@@ -174,7 +173,7 @@ private:
   const System& system_;
   Linearization linearization_;
   StageSystem stages_;
-  std::unique_ptr<ContactImpacts> impacts_; ///< null: not resolved
+  ContactImpacts impacts_;
   Residual residual_;
   State start_;
   std::vector<double> start_event_value_, start_event_derivative_; ///< event functions and their rates at the start of the present part

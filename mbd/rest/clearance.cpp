@@ -31,7 +31,7 @@ double way_of(const GapBounds& bounds, const VecX& displacement) {
 
 Clearance::Clearance(const System& system, double touch) : touch_(touch), still_(3 * system.bodies.size(), 0.0) {
   for (const auto& group : system.groups)
-    if (const auto* const source = dynamic_cast<const GapSource*>(group.get())) sources_.push_back(source);
+    if (const GapSource* const source = group->gap_source()) sources_.push_back(source);
 }
 
 void Clearance::measure(const std::vector<double>& q, bool is_instead) {

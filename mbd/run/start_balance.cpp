@@ -51,7 +51,7 @@ VecX StartBalance::contact_forces(const System& system) const {
   std::vector<BodyForce> force(system.bodies.size() + static_cast<std::size_t>(system.links.size()));
   e.force = e.link_force = force.data();
   for (const auto& group : system.groups)
-    if (dynamic_cast<const GapSource*>(group.get())) group->add_forces(e);
+    if (group->gap_source()) group->add_forces(e);
   for (int i = 0; i < system.links.size(); ++i) {
     const Link& link = system.links[i];
     const int slot = system.links.slot(i);

@@ -5,8 +5,6 @@
 
 namespace steplap {
 
-extern template struct EnclosingNumbers<4>; // enclosure.cpp
-
 namespace {
 
 constexpr double k_shortest = 1e-9; // spans shorter than this fraction of the step are not halved
@@ -151,10 +149,10 @@ bool FormulaPeakSearch::is_resolved(MonitoredFormula& sought, double t0, double 
     const double c4 = (even - 2.0 * (x(1) + x(3) - 2.0 * middle)) / 0.75, c3 = (odd - (x(3) - x(1))) / 0.75;
     const double rest = k_off_quartic * (std::abs(c3) + std::abs(c4)) + k_rounded_time * (std::abs(middle) + std::abs(odd));
     if (!std::isfinite(rest)) return false;
-    leaf_quartic_[i] = Enclosure<4>::of_polynomial({middle, odd - c3, even - c4, c3, c4}, rest);
+    leaf_quartic_[i] = Enclosure<k_quartic>::of_polynomial({middle, odd - c3, even - c4, c3, c4}, rest);
   }
-  const auto t = Enclosure<4>::of_polynomial({t0 + 0.5 * h, 0.5 * h}, k_rounded_time * std::abs(t0 + h));
-  const double rest = evaluate<EnclosingNumbers<4>>(*sought.tree, leaf_quartic_.data(), t, node_quartic_.data()).rest;
+  const auto t = Enclosure<k_quartic>::of_polynomial({t0 + 0.5 * h, 0.5 * h}, k_rounded_time * std::abs(t0 + h));
+  const double rest = evaluate<EnclosingNumbers<k_quartic>>(*sought.tree, leaf_quartic_.data(), t, node_quartic_.data()).rest;
   const double range = seen.high - seen.low;
   sought.scale = std::max(sought.scale, range);
   return rest <=

@@ -104,7 +104,7 @@ private:
   double t_event_ = std::numeric_limits<double>::quiet_NaN(); ///< start of the first step after the last event, s
   std::vector<double> y_, dy_, operands_, values_;
   std::vector<Enclosure<k_degree>> leaf_, node_;
-  std::vector<Enclosure<4>> leaf_quartic_, node_quartic_;
+  std::vector<Enclosure<k_quartic>> leaf_quartic_, node_quartic_;
   std::vector<Enclosure<0>> leaf_at_, node_at_;
   std::vector<Span> spans_;
   std::optional<double> undecided_;

@@ -137,6 +137,10 @@ public:
     for (ElementData& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
 
+  [[nodiscard]] const GapSource* gap_source() const override {
+    if constexpr (Law::k_is_contact) return this;
+    else return nullptr;
+  }
   /// Overrides GapSource::add_gaps() for laws that are contacts.
   void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const {
     if constexpr (Law::k_is_contact)

@@ -512,7 +512,7 @@ TEST_CASE("transformers on vehicles run by machine code, whose rows are on merge
 // Tapes that runs before have written are not written once more: of another sample of the scene constants alone are gathered.
 TEST_CASE("what runs before have made known serves other samples, to the same bytes") {
   if (!MachineCode::is_available()) return;
-  constexpr int k_rounds = 60; // in which modes that last for 80 stages have come often enough for code of their own
+  constexpr int k_rounds = 160; // in which modes that last for 25 stages have come often enough for code of their own
   for (int round = 0; round < k_rounds; ++round)
     for (const char* const file : {"/paper/no_interference.toml", "/paper/interference.toml"}) {
       CAPTURE(round);

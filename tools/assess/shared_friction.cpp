@@ -1,7 +1,6 @@
 #include "tools/assess/shared_friction.h"
 
 #include "elements/coulomb_stick.h"
-#include "elements/prescribed_motion.h"
 #include "mbd/base/name_pattern.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/presentation.h"
@@ -54,11 +53,6 @@ std::set<std::string> bodies_of(const ElementEntry& entry, const std::map<std::s
   return bodies;
 }
 
-// Returns true for loads and drives, which cannot hold a body.
-bool is_action_from_outside(const ElementEntry& entry) {
-  return entry.kind->has_constant_load || dynamic_cast<const PrescribedMotion*>(entry.element.get());
-}
-
 // Returns the elements, other than `own`, that hold the load which rests on these frictions. The load consists of all bodies connected with
 // the body on the friction, without the supporting body, the driven body and the ground.
 std::vector<std::string> holders_of(const DrivenModel& model, const Compiled& compiled, const std::vector<std::string>& own) {
@@ -74,7 +68,7 @@ std::vector<std::string> holders_of(const DrivenModel& model, const Compiled& co
   for (const ElementEntry& entry : whole.elements) {
     const std::set<std::string> bodies = bodies_of(entry, body_of_marker);
     if (left_out.contains(entry.element->name)) pair.insert(bodies.begin(), bodies.end());
-    else if (!is_action_from_outside(entry) && !bodies.empty()) edges.emplace_back(entry.element->name, bodies);
+    else if (!entry.kind->acts_from_outside && !bodies.empty()) edges.emplace_back(entry.element->name, bodies);
   }
   std::set<std::string> load;
   for (const std::string& body : pair)
