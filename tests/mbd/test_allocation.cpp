@@ -200,5 +200,6 @@ step = 1e-3
     CAPTURE(std::string(integrator));
     SimulationOptions o = options({integrator, std::string(integrator) == "rk4" ? 1e-4 : 1e-8, 0.3, 0.3});
     check_steps(*system, o, 0.05, 0);
+    CHECK(count_allocations(*system, o, 0.2).allocating == 0); // by then the code exists, or is not worth while
   }
 }

@@ -1,4 +1,5 @@
 // Numbers that no table can mean, and sizes that no machine holds, are errors of the model or are computed with: they never end the program.
+#include "mbd/base/stop.h"
 #include "mbd/run/loaded_model.h"
 #include "mbd/run/run.h"
 #include "transformer/program.h"
@@ -176,6 +177,23 @@ TEST_CASE("a core is not completed from a neighbour whose numbers are out of ran
   REQUIRE_FALSE(is_refused(model, "core.wound limbs.sheets_per_layer=1"));
   for (const char* const field : {"sheets_per_layer", "steps", "sheet_thickness"})
     CHECK(is_refused(model, std::string("core.wound limbs.") + field + "=0"));
+}
+
+// Time stepping divides the steps of this search, each into up to a million parts. The search counts the parts: it asks for a stop in each,
+// and two searches (from the given poses, and near the pose found) of 4000 steps make at most 40 000 parts each.
+TEST_CASE("a search for the rest of bodies 1e8 m apart ends") {
+  const auto loaded = load_model(STEPLAP_SOURCE "/tests/data/rest/far_apart.toml");
+  long asked = 0;
+  const StopQuestion count = [&asked] { return ++asked > 200'000 ? std::string("it does not end") : std::string(); };
+  const StopScope scope(count);
+  std::string problem;
+  try {
+    (void)equilibrium_of(*loaded);
+  } catch (const NumericalFailure& failure) {
+    problem = failure.what();
+  }
+  CAPTURE(asked);
+  CHECK(has(problem, "no stable equilibrium"));
 }
 
 // Accelerations of 1e320 m/s² are infinite, so the step is NaN; with 1e300 m/s² it shrinks to zero. Neither is less than a smallest step.

@@ -1,8 +1,10 @@
 // help, a bare command, --json of every command that prints a table, and the version for programs.
 #include "tests/tools/steplap/workbench.h"
 
+#include "mbd/run/summary.h"
 #include "tools/steplap/commands.h"
 #include "tools/steplap/json_screen.h"
+#include "transformer/program.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -179,4 +181,17 @@ TEST_CASE("a rest that depends on the way says so at its numbers") {
   CHECK(has(slid.out, "Distance from slipping at this rest, which is one of many"));
   CHECK_MESSAGE(has(held.out, "Reactions\n"), held.out);
   CHECK_FALSE(has(held.out, "one of many"));
+}
+
+// The file is written piece by piece, without a tree of all extremes.
+TEST_CASE("summary.json has the entries of the document, then the files and the checksum, laid out as the library for JSON lays them out") {
+  const Report report =
+      judged_run(load_model_text("simulation.end = 0.1\n[[body]]\nname = 'round \"ball\"'\nmass = 1.0\ninertia = 0.1\n", "ball.toml", {}));
+  const std::string text = report.json();
+  OrderedJson file = OrderedJson::parse(text);
+  CHECK(file.dump(2) + "\n" == text);
+  CHECK(file.erase("files") == 1);
+  CHECK(file.erase("checksum") == 1);
+  CHECK(file.at("extremes").size() == report.ranges().size());
+  CHECK(file.dump() == summary_document(report).dump());
 }

@@ -1,4 +1,5 @@
 // steplap simulate --require-hold: a second method is asked before a verdict may hold.
+#include "tests/physics/model_text.h"
 #include "tests/tools/steplap/workbench.h"
 
 #include <doctest/doctest.h>
@@ -134,60 +135,18 @@ TEST_CASE("what holds by all methods holds, and it is said who was asked") {
 // zero: it does not show what a step tolerates there, 1e-9 m/s, by which time stepping differs.
 TEST_CASE("a load that rests on a braking deck holds by both methods, although the estimate of one is zero") {
   Workbench bench;
-  const std::string model = bench.write("resting.toml", R"(simulation.end = 1.56
-simulation.initial = "equilibrium"
-[[body]]
-name = "deck"
-mass = 5e4
-inertia = 1e5
-outline = [[-4,-0.5],[4,-0.5],[4,0],[-4,0]]
-[[element]]
-kind = "prismatic"
-name = "road"
-a = "deck"
-[[signal]]
-name = "brake"
-kind = "haversine"
-peak = -4.07962
-start = 0.05
-duration = 0.229
-[[element]]
-kind = "prescribed_motion"
-name = "brake"
-a = "deck"
-signal = "brake"
-[[body]]
-name = "load"
-mass = 106.5
-inertia = 9.94355
-position = [0, 0.2]
-outline = [[-0.49, -0.2], [0.49, -0.2], [0.49, 0.2], [-0.49, 0.2]]
-[[element]]
-kind = "unilateral_contact"
-name = "load foot 0"
-a = { body = "load", point = [-0.49, -0.2] }
-b = "deck"
-stiffness = 2.79712e6
-damping = 6671.36
-[[element]]
-kind = "unilateral_contact"
-name = "load foot 1"
-a = { body = "load", point = [0.49, -0.2] }
-b = "deck"
-stiffness = 2.79712e6
-damping = 6671.36
-[[element]]
-kind = "coulomb_stick"
-name = "load friction"
-contacts = ["load foot 0", "load foot 1"]
-static_friction = 0.5
-kinetic_friction = 0.458
-[[acceptance]]
-name = "slide"
-channel = "load friction.slide"
-within = "5 mm"
-consequence = "reject"
-)");
+  std::string scene = "simulation = { end = 1.56, initial = 'equilibrium' }\n" + body("deck", "mass = 5e4; inertia = 1e5") +
+                      element("prismatic", "road", "a = 'deck'") +
+                      signal_entry("haversine", "brake", "peak = -4.07962; start = 0.05; duration = 0.229") +
+                      element("prescribed_motion", "drive", "a = 'deck'; signal = 'brake'") +
+                      body("load", "mass = 106.5; inertia = 9.94355; position = [0, 0.2]");
+  for (const std::string x : {"-0.49", "0.49"})
+    scene += element("unilateral_contact", "foot at " + x,
+                     "a = { body = 'load', point = [" + x + ", -0.2] }; b = 'deck'; stiffness = 2.79712e6; damping = 6671.36");
+  scene += element("coulomb_stick", "friction",
+                   "contacts = ['foot at -0.49', 'foot at 0.49']; static_friction = 0.5; kinetic_friction = 0.458") +
+           table_text("acceptance", "name = 'slide'\n", "channel = 'friction.slide'; within = '5 mm'; consequence = 'reject'");
+  const std::string model = bench.write("resting.toml", scene);
   const Outcome outcome = steplap_does({"simulate", model, "-o", bench.at("out"), "--require-hold"});
   CHECK(outcome.code == 0);
   CHECK(has(outcome.out, "HOLD  "));
