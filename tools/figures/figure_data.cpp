@@ -13,6 +13,7 @@
 #include <iostream>
 #include <numbers>
 #include <string>
+#include <vector>
 
 using namespace steplap;
 
@@ -20,6 +21,12 @@ namespace {
 
 constexpr double k_tongue = 0.05, k_margin = 0.02, k_traction = 0.25 * 1e5;
 const Mitre k_mitre{0.5, 3.3, 0.5, {}};
+
+// Overlap of the sheets of neighbouring layers, across the mitre.
+struct LapBand {
+  double inner = 0.0, outer = 0.0; // edges, m
+  double count = 1.0;              // number of interfaces
+};
 const LapBand k_lap{-0.005, 0.005, 1165.0};
 
 struct Sheets {
@@ -116,18 +123,22 @@ void write_shrinking(const std::string& path) {
   std::ofstream file = open(path);
   const CornerFrame corner = corner_frame(k_mitre, 1.0, 1.0);
   Book book;
-  book.sheet_thickness = book.stack_depth = 1.0;
   book.steps = 5;
-  book.step_pitch = 6.25e-3;
+  book.pitch = 6.25e-3;
+  const double half = 0.5 * mean_overlap(book);
+  const std::vector<LapBand> mean{{-half, half}};
+  std::vector<LapBand> each{
+      {line_at(book, 0), line_at(book, book.steps - 1)}}; // between the last layer of a book and the first of the next
+  for (long k = 0; k + 1 < book.steps; ++k) each.push_back({line_at(book, k), line_at(book, k + 1)});
   const auto left = [&](const std::vector<LapBand>& bands, double d) {
     double sum = 0.0;
     for (const LapBand& b : bands) sum += area(overlap(sheets(corner, b), {d * corner.across.x(), d * corner.across.y(), 0.0}));
     return sum / static_cast<double>(bands.size());
   };
-  const double whole = left(mean_band(book), 0.0);
+  const double whole = left(mean, 0.0);
   for (int k = 0; k <= 260; ++k) {
     const double d = k * 1e-4;
-    file << d * 1e3 << ' ' << left(mean_band(book), d) / whole << ' ' << left(each_band(book), d) / whole << '\n';
+    file << d * 1e3 << ' ' << left(mean, d) / whole << ' ' << left(each, d) / whole << '\n';
   }
 }
 
