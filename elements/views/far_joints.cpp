@@ -1,4 +1,4 @@
-#include "elements/views/far_joints.h"
+#include "elements/views/kind_checks.h"
 
 #include "elements/joints.h"
 #include "mbd/base/number_text.h"

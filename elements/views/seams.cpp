@@ -1,4 +1,4 @@
-#include "elements/views/seams.h"
+#include "elements/views/kind_checks.h"
 
 #include "elements/round_contacts.h"
 #include "mbd/base/number_text.h"

@@ -1,4 +1,4 @@
-#include "elements/views/start_checks.h"
+#include "elements/views/kind_checks.h"
 
 #include "elements/limit.h"
 #include "elements/unilateral_contact.h"

@@ -1,4 +1,4 @@
-#include "elements/views/stepped_feet.h"
+#include "elements/views/kind_checks.h"
 
 #include "elements/coulomb_stick.h"
 #include "elements/unilateral_contact.h"

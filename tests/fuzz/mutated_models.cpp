@@ -62,7 +62,7 @@ struct Cases {
   std::vector<std::string> texts;
   std::uint64_t seed = 1;
 
-  std::size_t corpus = 0; ///< the last so many files are a fuzzer's corpus, malformed or studies: most of them are refused as they are
+  std::size_t corpus = 0; ///< the last so many files are a fuzzer's corpus or studies: most of them are refused as they are
 
   [[nodiscard]] std::size_t file_of(std::uint64_t number) const {
     const std::size_t models = files.size() - corpus;
@@ -230,8 +230,7 @@ Cases cases_of(const Options& options) {
   cases.files = options.files;
   const auto is_of_corpus = [](const fs::path& file) {
     const std::string folder = file.parent_path().string();
-    return folder.find("corpus") != std::string::npos || folder.find("malformed") != std::string::npos ||
-           folder.find("studies") != std::string::npos;
+    return folder.find("corpus") != std::string::npos || folder.find("studies") != std::string::npos;
   };
   const auto is_before = [&](const fs::path& a, const fs::path& b) { // folders list their files in any order
     return is_of_corpus(a) != is_of_corpus(b) ? is_of_corpus(b) : a < b;

@@ -1,13 +1,14 @@
-// Every file of tests/data/malformed fails with exactly the messages that its own "# expect:" lines
-// give ("# set:" lines are overrides; folders are cut off). Files *.inc are extended by others.
+// Every model of tests/data/malformed.txt fails with exactly the messages that its own "# expect:" lines give ("# set:" lines are
+// overrides; folders are cut off). A line "=== NAME" begins a file; files *.inc and *.csv are read by models.
 #include "mbd/io/reader.h"
 #include "tests/mbd/small_catalogue.h"
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
+
+#include <unistd.h>
 
 using namespace steplap;
 namespace fs = std::filesystem;
@@ -37,20 +38,41 @@ std::vector<std::string> messages(const fs::path& file) {
   return texts;
 }
 
-std::vector<fs::path> malformed_files() {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(STEPLAP_TEST_DATA "/malformed"))
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
+// The files of tests/data/malformed.txt in a folder of their own.
+class MalformedFiles {
+public:
+  MalformedFiles() : folder_(fs::temp_directory_path() / ("steplap_malformed_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+    std::ifstream all(STEPLAP_TEST_DATA "/malformed.txt");
+    std::ofstream file;
+    const std::string mark = "=== ";
+    for (std::string line; std::getline(all, line);) {
+      if (line.rfind(mark, 0) != 0) {
+        file << line << '\n';
+        continue;
+      }
+      const fs::path path = folder_ / line.substr(mark.size());
+      file.close();
+      file.open(path);
+      if (path.extension() == ".toml") models.push_back(path);
+    }
+  }
+  MalformedFiles(const MalformedFiles&) = delete;
+  MalformedFiles& operator=(const MalformedFiles&) = delete;
+  ~MalformedFiles() { fs::remove_all(folder_); }
+
+  std::vector<fs::path> models;
+
+private:
+  fs::path folder_;
+};
 
 } // namespace
 
 TEST_CASE("malformed model files fail with the message they expect") {
-  const std::vector<fs::path> files = malformed_files();
-  CHECK(files.size() >= 100);
-  for (const fs::path& file : files) {
+  const MalformedFiles files;
+  CHECK(files.models.size() == 131);
+  for (const fs::path& file : files.models) {
     CAPTURE(file.filename().string());
     const std::vector<std::string> expected = lines_after(file, "# expect: ");
     CHECK_FALSE(expected.empty());

@@ -1,4 +1,5 @@
-#include "tools/study/critical.h"
+// Study kind "critical": finds the values of one variable at which an expression is zero.
+#include "tools/study/kinds.h"
 
 #include "tools/study/crossing.h"
 #include "tools/study/line_scan.h"
@@ -9,6 +10,14 @@
 namespace steplap::study {
 
 namespace {
+
+/// Settings of a "critical" study.
+struct CriticalSettings : KindSettings {
+  std::string variable;
+  std::string expression;  ///< the expression whose zeros are searched
+  long points = 21;        ///< number of points of the first scan
+  double tolerance = 1e-9; ///< tolerance of a zero, relative to the variable's range
+};
 
 FieldTable critical_fields() {
   using S = CriticalSettings;

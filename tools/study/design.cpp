@@ -6,6 +6,7 @@
 #include "tools/study/case_limits.h"
 #include "tools/study/design_choice.h"
 #include "tools/study/holding.h"
+#include "tools/study/kinds.h"
 #include "tools/study/target_border.h"
 
 #include <algorithm>

@@ -15,6 +15,4 @@ struct DesignSettings : ReliabilitySettings {
   std::string cost;        ///< cost as a formula of the variables; "": the study searches one variable
 };
 
-[[nodiscard]] StudyKind design_kind();
-
 } // namespace steplap::study

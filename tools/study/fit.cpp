@@ -1,4 +1,5 @@
-#include "tools/study/fit.h"
+// Study kind "fit": identifies parameters from measured histories by least squares, and finds out which parameters the records determine.
+#include "tools/study/kinds.h"
 
 #include "tools/study/counter_random.h"
 #include "tools/study/history.h"
@@ -12,6 +13,13 @@
 namespace steplap::study {
 
 namespace {
+
+/// Settings of a "fit" study.
+struct FitSettings : KindSettings {
+  long starts = 8;       ///< number of candidate start points; the search starts from the best of them
+  long iterations = 100; ///< limit for one search
+  double confidence = 0.95;
+};
 
 FieldTable fit_fields() {
   FieldTable t;

@@ -1,15 +1,5 @@
 #include "tools/study/kinds.h"
 
-#include "tools/study/critical.h"
-#include "tools/study/design.h"
-#include "tools/study/fit.h"
-#include "tools/study/map.h"
-#include "tools/study/needs.h"
-#include "tools/study/reliability.h"
-#include "tools/study/sample.h"
-#include "tools/study/sensitivity.h"
-#include "tools/study/sweep.h"
-
 #include <stdexcept>
 
 namespace steplap::study {

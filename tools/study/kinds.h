@@ -1,4 +1,4 @@
-// List of all study kinds. New kinds are added in kinds.cpp.
+// All study kinds. A new kind is declared here and listed in kinds.cpp.
 #pragma once
 
 #include "tools/study/study_kind.h"
@@ -7,6 +7,17 @@
 #include <vector>
 
 namespace steplap::study {
+
+// Each is defined in the source of its name.
+[[nodiscard]] StudyKind sweep_kind();
+[[nodiscard]] StudyKind sample_kind();
+[[nodiscard]] StudyKind reliability_kind();
+[[nodiscard]] StudyKind sensitivity_kind();
+[[nodiscard]] StudyKind critical_kind();
+[[nodiscard]] StudyKind design_kind();
+[[nodiscard]] StudyKind map_kind();
+[[nodiscard]] StudyKind needs_kind();
+[[nodiscard]] StudyKind fit_kind();
 
 [[nodiscard]] const std::vector<StudyKind>& study_kinds();
 [[nodiscard]] std::vector<std::string> kind_names();

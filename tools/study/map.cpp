@@ -1,8 +1,8 @@
-// Traces the zero curve of an expression in the plane of two variables.
+// Study kind "map": finds the curve in the plane of two variables on which an expression is zero.
 //
 // First the expression is evaluated on a grid. From every crossing of a grid line the curve is followed in both directions: a step along
 // the tangent, then a search across it.
-#include "tools/study/map.h"
+#include "tools/study/kinds.h"
 
 #include "tools/study/crossing.h"
 
@@ -14,6 +14,16 @@
 namespace steplap::study {
 
 namespace {
+
+/// Settings of a "map" study.
+struct MapSettings : KindSettings {
+  std::vector<std::string> variables; ///< names of the two variables
+  std::string expression;             ///< expression whose zeros form the curve
+  double step = 0.02;                 ///< step along the curve, relative to the ranges
+  long points = 11;                   ///< number of points per side of the first grid
+  double tolerance = 1e-9;
+  bool is_logarithmic = false;
+};
 
 FieldTable map_fields() {
   using S = MapSettings;

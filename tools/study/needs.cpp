@@ -1,4 +1,6 @@
-#include "tools/study/needs.h"
+// Study kind "needs": finds which parts of a scene matter. Each element is removed or made rigid and each body is fixed, one at a time, and
+// the change of the responses is measured.
+#include "tools/study/kinds.h"
 
 #include "elements/joints.h"
 #include "mbd/model/completion.h"
@@ -9,6 +11,11 @@
 namespace steplap::study {
 
 namespace {
+
+/// Settings of a "needs" study.
+struct NeedsSettings : KindSettings {
+  double accuracy = 0.01; ///< relative changes of responses up to this value do not matter
+};
 
 FieldTable needs_fields() {
   FieldTable t;

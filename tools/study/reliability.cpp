@@ -1,6 +1,7 @@
 #include "tools/study/reliability.h"
 
 #include "tools/study/evidence.h"
+#include "tools/study/kinds.h"
 #include "tools/study/random_variables.h"
 #include "tools/study/samplers.h"
 

@@ -25,6 +25,4 @@ struct ReliabilitySettings : KindSettings {
   [[nodiscard]] bool ends_by_clock() const override { return seconds.has_value(); }
 };
 
-[[nodiscard]] StudyKind reliability_kind();
-
 } // namespace steplap::study

@@ -1,4 +1,5 @@
-#include "tools/study/sample.h"
+// Study kind "sample": draws samples from the distributions and describes the responses.
+#include "tools/study/kinds.h"
 
 #include "tools/study/counter_random.h"
 #include "tools/study/random_variables.h"
@@ -13,6 +14,12 @@
 namespace steplap::study {
 
 namespace {
+
+/// Settings of a "sample" study.
+struct SampleSettings : KindSettings {
+  std::string design = "monte_carlo"; ///< monte_carlo, latin_hypercube, sobol, halton
+  long samples = 1000;
+};
 
 FieldTable sample_fields() {
   FieldTable t;

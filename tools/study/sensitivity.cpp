@@ -1,6 +1,7 @@
 #include "tools/study/sensitivity.h"
 
 #include "tools/study/counter_random.h"
+#include "tools/study/kinds.h"
 #include "tools/study/random_variables.h"
 
 #include <openturns/ComposedDistribution.hxx>

@@ -15,8 +15,6 @@ struct SensitivitySettings : KindSettings {
   double confidence = 0.95;
 };
 
-[[nodiscard]] StudyKind sensitivity_kind();
-
 /// Returns the relative error of a run's results: the tolerance of adaptive methods. With constant steps it is the accuracy of event
 /// location, because step errors vary smoothly with the variables and cancel in differences.
 [[nodiscard]] double run_error_of(const LoadedStudy& loaded);

@@ -1,4 +1,5 @@
-#include "tools/study/sweep.h"
+// Study kind "sweep": evaluates given values one after the other.
+#include "tools/study/kinds.h"
 
 #include "mbd/base/number_text.h"
 #include "tools/study/grid.h"
@@ -8,6 +9,12 @@
 namespace steplap::study {
 
 namespace {
+
+/// Settings of a "sweep" study.
+struct SweepSettings : KindSettings {
+  std::string design = "grid"; ///< choice of points: grid, list, one_at_a_time
+  long points = 11;            ///< number of points over a range, or over the 5 % to 95 % quantiles of a distribution
+};
 
 FieldTable sweep_fields() {
   FieldTable t;
