@@ -1,7 +1,6 @@
 #include "transformer/program.h"
 
 #include "elements/views/element_views.h"
-#include "mbd/run/loaded_text.h"
 #include "transformer/catalog.h"
 #include "transformer/core/core.h"
 #include "transformer/core/core_drawing.h"

@@ -6,7 +6,6 @@
 #include "mbd/io/parts.h"
 #include "mbd/io/signal_units.h"
 #include "mbd/io/standalone_text.h"
-#include "mbd/io/text_reader.h"
 #include "mbd/io/toml_writer.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/field_units.h"

@@ -27,6 +27,11 @@ namespace steplap {
 [[nodiscard]] Model parse_model(std::string text, const std::string& file_name, const Catalogue& catalogue,
                                 const std::vector<std::string>& overrides = {});
 
+/// Reads a text like parse_model(), for programs that generate models. `standalone` receives standalone_text() of the document. Throws
+/// ModelError.
+[[nodiscard]] Model parse_model_text(std::string text, const std::string& file_name, const Catalogue& catalogue,
+                                     const std::vector<std::string>& overrides, std::string& standalone);
+
 /// Reads a model and returns it as given, without completion, for callers that set values (mbd/model/model_path.h) and complete it later
 /// (mbd/model/completion.h). The model is also completed and checked, so that errors are reported with their location. Throws ModelError.
 [[nodiscard]] Model read_given_model(const std::string& path, const Catalogue& catalogue, const std::vector<std::string>& overrides = {});

@@ -4,7 +4,6 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/io/read_input.h"
 #include "mbd/run/findings.h"
-#include "mbd/run/loaded_text.h"
 
 #include <algorithm>
 #include <atomic>

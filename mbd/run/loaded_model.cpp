@@ -4,12 +4,10 @@
 #include "mbd/io/presentation.h"
 #include "mbd/io/read_input.h"
 #include "mbd/io/reader.h"
-#include "mbd/io/text_reader.h"
 #include "mbd/model/completion.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/start.h"
 #include "mbd/run/failure.h"
-#include "mbd/run/loaded_text.h"
 #include "mbd/run/tipping.h"
 #include "mbd/simulation/trajectory.h"
 

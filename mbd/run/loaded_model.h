@@ -37,6 +37,10 @@ struct LoadedModel {
 /// contains control characters, because the folder of the results is named after the file.
 [[nodiscard]] std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std::vector<std::string>& overrides,
                                                             const RunCatalogue& catalogue);
+/// Works like load_model(), but reads `text`. `path` is used for messages, for relative paths inside the model and for the names of
+/// results; no file is read from it. Throws as load_model() does.
+[[nodiscard]] std::shared_ptr<const LoadedModel> load_model_text(const std::string& text, const std::string& path,
+                                                                 const std::vector<std::string>& overrides, const RunCatalogue& catalogue);
 /// Completes, checks and compiles a model built in code. It has no text, so its results cannot be written to files. Throws ModelError.
 [[nodiscard]] std::shared_ptr<const LoadedModel> load_given(const Model& given, const std::string& name,
                                                             std::shared_ptr<const KindViews> views);

@@ -1,7 +1,6 @@
 #include "mbd/run/overview.h"
 
 #include "mbd/base/shown_text.h"
-#include "mbd/run/at_rest.h"
 #include "mbd/run/blows.h"
 #include "mbd/run/prominence.h"
 

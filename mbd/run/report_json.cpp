@@ -1,6 +1,5 @@
 #include "mbd/formula/unit_dimension.h"
 #include "mbd/io/digest.h"
-#include "mbd/run/at_rest.h"
 #include "mbd/run/ordered_json.h"
 #include "mbd/run/overview.h"
 #include "mbd/run/prominence.h"

@@ -51,4 +51,9 @@ Run run_model(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& op
   return run;
 }
 
+bool is_at_rest(const Run& run) {
+  const RunStatistics& s = run.result.statistics;
+  return s.energy_exchanged <= s.energy_rounding && run.loaded->system->kinetic_energy(run.result.final_state) <= s.energy_rounding;
+}
+
 } // namespace steplap

@@ -23,4 +23,7 @@ struct Run {
 /// if the run cannot start.
 [[nodiscard]] Run run_model(std::shared_ptr<const LoadedModel> loaded, const RunOptions& options = {});
 
+/// Returns true if nothing moved in the run, apart from rounding. No channel then has a range to which an error could be related.
+[[nodiscard]] bool is_at_rest(const Run& run);
+
 } // namespace steplap
