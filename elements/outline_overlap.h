@@ -134,19 +134,32 @@ template <class S> struct CutRing {
   std::array<int, k_most_ring> edge;
 };
 
-/// Writes the part of `in` with depth ≥ 0 to `out`; `depth` is a linear function of position. The new edge gets the number `made`.
-template <class S, class Depth> void cut(const CutRing<S>& in, const Depth& depth, int made, CutRing<S>& out) {
-  out.size = 0;
-  if (in.size == 0) return;
+/// Writes the part of `in` with depth ≥ 0 to `out`; `depth` is a linear function of position. The new edge gets the number `made`. Returns
+/// false, and leaves `out` as it is, if no corner is outside.
+template <class S, class Depth> [[nodiscard]] bool cut(const CutRing<S>& in, const Depth& depth, int made, CutRing<S>& out) {
+  if (in.size == 0) return false;
+  const S first = depth(in.corner[0]);
+  S now = first;
+  int begin = 0; // last corner before the first one outside
+  if (!(now < S(0)))
+    for (;; ++begin) {
+      if (begin + 1 == in.size) return false;
+      const S next = depth(in.corner[begin + 1]);
+      if (next < S(0)) break;
+      now = next;
+    }
+  out.size = begin;
+  for (int i = 0; i < begin; ++i) {
+    out.corner[i] = in.corner[i];
+    out.edge[i] = in.edge[i];
+  }
   const auto put = [&out](const Pair<S>& corner, int edge) {
     // Capacity exceeded, only possible in slivers of rounding size, whose corners change sides more than twice: the rest is dropped.
     if (out.size == k_most_ring) return;
     out.corner[out.size] = corner;
     out.edge[out.size++] = edge;
   };
-  S now = depth(in.corner[0]);
-  const S first = now;
-  for (int i = 0; i < in.size; ++i) {
+  for (int i = begin; i < in.size; ++i) {
     const int j = i + 1 < in.size ? i + 1 : 0;
     const S next = j == 0 ? first : depth(in.corner[j]);
     const bool is_in = !(now < S(0)), is_next_in = !(next < S(0));
@@ -158,13 +171,14 @@ template <class S, class Depth> void cut(const CutRing<S>& in, const Depth& dept
     }
     now = next;
   }
+  return true;
 }
 
 /// Resultant of the forces on a by the overlap.
 template <class S> struct OverlapForce {
   Pair<S> force;
   S moment{0};      ///< moment about the origin, N m
-  S volume{0};      ///< ∫ d dA, m³
+  S volume{0};      ///< ∫ d dA, m³; zero unless it was asked for
   S dissipation{0}; ///< dissipated power, W
   /// True if one outline is completely inside the other: the boundary of the overlap then belongs to one body, and no force separates them.
   bool is_swallowed = false;
@@ -178,20 +192,20 @@ template <class S> struct RelativeVelocity {
 
 namespace overlap_detail {
 
-// Integrals ∫ 1, τ, τ², ν over a polygon, with τ and ν the coordinates across and along n.
+// Integrals ∫ 1, τ, τ², ν over a polygon, with τ and ν the coordinates across and along n. The last two only if asked for.
 template <class S> struct CellSums {
   S area{0}, across{0}, across2{0}, along{0};
 };
 
-template <class S> CellSums<S> sums_of(const CutRing<S>& ring, const Pair<S>& n) {
+template <class S> CellSums<S> sums_of(const CutRing<S>& ring, const Pair<S>& n, bool has_square, bool has_along) {
   CellSums<S> sums;
   for (int i = 0; i < ring.size; ++i) {
     const Pair<S>&p = ring.corner[i], &q = ring.corner[i + 1 < ring.size ? i + 1 : 0];
     const S twice = cross(p, q), s = cross(p, n), t = cross(q, n);
     sums.area += S(0.5) * twice;
     sums.across += S(1.0 / 6.0) * twice * (s + t);
-    sums.across2 += S(1.0 / 12.0) * twice * (s * s + s * t + t * t);
-    sums.along += S(1.0 / 6.0) * twice * (dot(p, n) + dot(q, n));
+    if (has_square) sums.across2 += S(1.0 / 12.0) * twice * (s * s + s * t + t * t);
+    if (has_along) sums.along += S(1.0 / 6.0) * twice * (dot(p, n) + dot(q, n));
   }
   return sums;
 }
@@ -204,11 +218,11 @@ template <class S> struct EdgeLine {
 
 } // namespace overlap_detail
 
-/// Returns the forces of two outlines placed about a common origin. `stiffness`: k, N/m²; `dissipation`: α, s/m. The volume is complete
-/// only with `is_whole`; otherwise cells without force are skipped.
+/// Returns the forces of two outlines placed about a common origin. `stiffness`: k, N/m²; `dissipation`: α, s/m. `has_volume`: computes the
+/// volume, too; otherwise cells without force are skipped.
 template <class S>
 OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>& b, const RelativeVelocity<S>& velocity, double stiffness,
-                              double dissipation, bool is_whole = false) {
+                              double dissipation, bool has_volume = false) {
   using overlap_detail::EdgeLine;
   OverlapForce<S> result;
   CutRing<S> rings[3];
@@ -220,8 +234,7 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
   }
   for (int j = 0; j < b.edge_count && rings[now].size > 0; ++j) {
     const auto depth = [&](const Pair<S>& x) { return b.offset[j] - dot(b.normal[j], x); };
-    cut(rings[now], depth, a.edge_count + j, rings[1 - now]);
-    now = 1 - now;
+    if (cut(rings[now], depth, a.edge_count + j, rings[1 - now])) now = 1 - now;
   }
   CutRing<S>& overlap = rings[now];
   if (overlap.size < 3) return result;
@@ -244,28 +257,30 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
   S moment(0);
   for (int i = 0; i < overlap.size; ++i) {
     const bool is_a = overlap.edge[i] < a.edge_count, is_elastic = is_a == is_from_a;
-    if (!is_elastic && dissipation == 0.0 && !is_whole) continue;
+    if (!is_elastic && dissipation == 0.0 && !has_volume) continue;
     const CutRing<S>* source = &overlap;
+    bool has_others = false; // edges besides this one
     for (int j = 0; j < overlap.size && source->size > 0; ++j) {
       if (overlap.edge[j] == overlap.edge[i]) continue;
+      has_others = true;
       const auto below = [&](const Pair<S>& x) { return line[j].depth(x) - line[i].depth(x); };
-      cut(*source, below, overlap.edge[j], *spare);
+      if (!cut(*source, below, overlap.edge[j], *spare)) continue;
       std::swap(cell, spare);
       source = cell;
     }
-    if (source == &overlap || source->size < 3) continue;
+    if (!has_others || source->size < 3) continue;
     const Pair<S> n = S(is_a ? -1.0 : 1.0) * line[i].normal; // direction of the force on a
-    const auto whole = overlap_detail::sums_of(*cell, n);
+    const auto whole = overlap_detail::sums_of(*source, n, dissipation != 0.0, has_volume);
     const S closing = -dot(u, n), turning = -velocity.spin; // c = closing + turning τ
-    result.volume += line[i].offset * whole.area + (is_a ? whole.along : -whole.along);
+    if (has_volume) result.volume += line[i].offset * whole.area + (is_a ? whole.along : -whole.along);
     if (is_elastic) {
       result.force = result.force + (S(2) * k * whole.area) * n;
       moment += S(2) * k * whole.across;
     }
     if (dissipation == 0.0) continue;
     const auto pressure = [&](const Pair<S>& x) { return S(1) + alpha * (closing + turning * cross(x, n)); };
-    cut(*cell, pressure, -1, *spare);
-    const auto part = overlap_detail::sums_of(*spare, n);
+    const bool is_less = cut(*source, pressure, -1, *spare); // some of the cell has no pressure
+    const auto part = is_less ? overlap_detail::sums_of(*spare, n, true, false) : whole;
     const S rest = S(1) + alpha * closing, slope = alpha * turning;
     // Force of the dissipation; exactly zero at rest.
     const S f = rest * part.area + slope * part.across - whole.area, m = rest * part.across + slope * part.across2 - whole.across;

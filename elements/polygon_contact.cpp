@@ -22,6 +22,7 @@ using D12 = Dual<12>;
 
 struct Outlines {
   ConvexOutline a, b;
+  PlacedOutline<double> own_b;         ///< b in the axes of its body
   double reach_a = 0.0, reach_b = 0.0; ///< distance of the farthest corner from the centre of gravity, m
   double through = 0.0;                ///< GapBounds::through, m: penetration at which one part is entirely through the other
   double narrowest = 0.0;              ///< the smaller of the widths (width_of()) of a and b, m
@@ -44,16 +45,21 @@ public:
     std::shared_ptr<const Outlines> outlines;
     double stiffness = 0.0, dissipation = 0.0;
     bool has_friction = false;
+    bool has_same_a = false; ///< bodies and outline a are those of the entry before
     int link = 0, unit = 0, first_event = 0, contact = 0;
   };
   std::vector<ElementData> entries;
 
   void add_forces(Evaluation& e) const override {
+    PlacedOutline<double> a;
     for (const ElementData& entry : entries) {
       const Motion<double>& m = e.link_motion[entry.link];
-      const Placed<double, Origin> placed(*entry.outlines, m, Origin{});
+      const Pair<double> centre = offset(m, Origin{});
+      if (!entry.has_same_a) place_outline(entry.outlines->a, m, centre, a);
+      const PlacedOutline<double>& b = entry.outlines->own_b;
+      const RelativeVelocity<double> velocity = relative(m, centre);
       const UnitMode mode = e.mode[entry.unit];
-      const Approach now = approach(placed, relative(m, placed.centre));
+      const Approach now = approach(a, b, velocity);
       const double sign = mode == k_contact_open ? 1.0 : -1.0;
       e.event_value[entry.first_event] = sign * now.gap;
       e.event_derivative[entry.first_event] = sign * now.rate;
@@ -61,17 +67,17 @@ public:
       if (mode == k_contact_open) continue;
       BodyForce& sum = e.link_force[entry.link];
       if (now.gap > 0.0) {
-        bring_back(entry, placed, now, sum);
+        bring_back(entry, centre, now, sum);
         continue;
       }
-      const OverlapForce<double> f = force(entry, placed, relative(m, placed.centre));
+      const OverlapForce<double> f = overlap_force(a, b, velocity, entry.stiffness, entry.dissipation);
       if (f.is_swallowed) {
-        bring_back(entry, placed, now, sum);
+        bring_back(entry, centre, now, sum);
         continue;
       }
       sum.fx += f.force.x;
       sum.fy += f.force.y;
-      sum.m += f.moment - cross(placed.centre, f.force);
+      sum.m += f.moment - cross(centre, f.force);
       e.contact_force[entry.contact] = size_of(f.force);
       e.dissipation += f.dissipation;
     }
@@ -102,7 +108,7 @@ public:
       RelativeVelocity<D12> velocity;
       velocity.u = Pair<D12>{a.vx - b.vx, a.vy - b.vy} - a.omega * perp(placed.centre);
       velocity.spin = a.omega - b.omega;
-      const OverlapForce<D12> f = force(entry, placed, velocity);
+      const OverlapForce<D12> f = overlap_force(placed.a, placed.b, velocity, entry.stiffness, entry.dissipation);
       const D12 couple_a = f.moment - cross(placed.centre, f.force);
       const D12 rows[6] = {f.force.x, f.force.y, couple_a, -f.force.x, -f.force.y, -f.moment};
       for (int i = 0; i < 6; ++i) {
@@ -135,7 +141,7 @@ public:
       GapBounds& bounds = out.emplace_back();
       bounds.a = entry.a;
       bounds.b = entry.b;
-      const Approach now = approach(placed, RelativeVelocity<double>{});
+      const Approach now = approach(placed.a, placed.b, RelativeVelocity<double>{});
       bounds.gap = now.gap;
       bounds.normal = now.normal;
       bounds.reach_a = entry.outlines->reach_a;
@@ -177,7 +183,7 @@ public:
     RelativeVelocity<double> velocity;
     velocity.u = Pair<double>{a.vx - b.vx, a.vy - b.vy} - a.omega * perp(placed.centre);
     velocity.spin = a.omega - b.omega;
-    return approach(placed, velocity);
+    return approach(placed.a, placed.b, velocity);
   }
 
 private:
@@ -186,29 +192,25 @@ private:
   // corner of that depth. Needed because stages of a step that is too long may leave the contact, pass a thin part, or end below the
   // ground: without any force there, the error estimate would be zero and the step would be accepted. No accepted step ends in such a state
   // (first_swallowed()).
-  static void bring_back(const ElementData& entry, const Placed<double, Origin>& placed, const Approach& now, BodyForce& sum) {
+  static void bring_back(const ElementData& entry, const Pair<double>& centre, const Approach& now, BodyForce& sum) {
     const Pair<double> f = (-entry.stiffness * now.gap * std::abs(now.gap)) * now.normal;
     sum.fx += f.x;
     sum.fy += f.y;
-    sum.m += cross(now.corner - placed.centre, f);
+    sum.m += cross(now.corner - centre, f);
   }
   static double size_of(const Pair<double>& f) { return std::sqrt(dot(f, f)); }
   static D12 size_of(const Pair<D12>& f) { return sqrt(dot(f, f)); }
   static RelativeVelocity<double> relative(const Motion<double>& m, const Pair<double>& centre) {
     return {Pair<double>{m.vx, m.vy} - m.omega * perp(centre), m.omega};
   }
-  template <class S, class B>
-  static OverlapForce<S> force(const ElementData& entry, const Placed<S, B>& placed, const RelativeVelocity<S>& velocity) {
-    return overlap_force(placed.a, placed.b, velocity, entry.stiffness, entry.dissipation);
-  }
   // The rate of the gap is the velocity of the corner relative to the material point of the other body at the same position, irrespective
   // of which body has the face.
-  template <class B> static Approach approach(const Placed<double, B>& placed, const RelativeVelocity<double>& velocity) {
-    const Separation s = separation_of(placed.a, placed.b);
-    const int faces = placed.a.edge_count;
+  static Approach approach(const PlacedOutline<double>& a, const PlacedOutline<double>& b, const RelativeVelocity<double>& velocity) {
+    const Separation s = separation_of(a, b);
+    const int faces = a.edge_count;
     const bool is_of_b = s.face >= faces;
-    const Pair<double> corner = is_of_b ? placed.a.corner[s.corner] : placed.b.corner[s.corner];
-    const Pair<double> n = is_of_b ? placed.b.normal[s.face - faces] : -1.0 * placed.a.normal[s.face];
+    const Pair<double> corner = is_of_b ? a.corner[s.corner] : b.corner[s.corner];
+    const Pair<double> n = is_of_b ? b.normal[s.face - faces] : -1.0 * a.normal[s.face];
     return {s.gap, dot(n, velocity.u + velocity.spin * perp(corner)), corner, n};
   }
 };
@@ -428,10 +430,16 @@ void compile_polygon(const Element& element, SystemBuilder& builder) {
   entry.b = builder.marker(e.b).body;
   const double narrowest = is_plane ? width_of(*a) : std::min(width_of(*a), width_of(*b));
   const double through = is_plane ? std::numeric_limits<double>::infinity() : 0.5 * narrowest;
-  entry.outlines = std::make_shared<const Outlines>(Outlines{*a, *b, reach_of(*a), reach_of(*b), through, narrowest});
+  PlacedOutline<double> own_b;
+  place_outline(*b, Origin{}, Pair<double>{}, own_b);
+  entry.outlines = std::make_shared<const Outlines>(Outlines{*a, *b, own_b, reach_of(*a), reach_of(*b), through, narrowest});
   entry.stiffness = e.stiffness;
   entry.dissipation = e.dissipation;
   entry.has_friction = e.static_friction.has_value() && !is_plane;
+  if (!group.entries.empty()) {
+    const PolygonGroup::ElementData& before = group.entries.back();
+    entry.has_same_a = entry.a == before.a && entry.b == before.b && entry.outlines->a.corners == before.outlines->a.corners;
+  }
   group.entries.push_back(std::move(entry));
   builder.add_unit(group, 1);
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
