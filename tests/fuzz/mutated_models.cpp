@@ -6,7 +6,7 @@
 // (0, as without it: none is); --whole NUMBER: one in so many cases is not left, and goes the whole way of `steplap simulate`: findings,
 // extremes, errors by finer runs, summary.json; --said FILE, to which the counts so far are written now and then.
 // An answer is a run, an error of the model or a numerical failure; everything else is a finding: signals, other exceptions, memory
-// beyond 4 GB, and more than 10 s of a processor. Exit code 1 if there was a crash; hangs are printed to be explained.
+// beyond 2 GB, and more than 10 s of a processor. Exit code 1 if there was a crash; hangs are printed to be explained.
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
@@ -43,7 +43,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double k_run = 0.02;                       // s of simulated time
-constexpr std::uint64_t k_memory = 4'000'000'000ULL; // bytes
+constexpr std::uint64_t k_memory = 2'000'000'000ULL; // bytes
 
 struct Options {
   std::uint64_t count = 0, seed = 1, first = 0;
