@@ -42,7 +42,7 @@ const std::array<PairedRule, k_most + 1>& rules() {
 int nodes_at(double x, int more) {
   constexpr int bits = 57;
   if (x < 0x1p-57) return 2 + more;
-  const int k = std::max(0, -1 - std::ilogb(x * x * x * x));
+  const int k = x < 1.0 ? -1 - std::ilogb(x * x * x * x) : 0; // 0 for NaN, too, which has no exponent
   const int twice = 4 * bits + (3 + more) * k;
   const int n = (twice + 2 * (k + 4) - 1) / (2 * (k + 4));
   return std::clamp(n, 2 + more, k_most);

@@ -202,6 +202,7 @@ template <bool WithCurvature> Polar polar_of(const double* a, int row, double ka
 int FarField::needed_order(double x) {
   constexpr int bits = 57;
   if (x < 0x1p-57) return 3;
+  if (!(x < 1.0)) return k_order; // NaN, too, which has no exponent
   const int k = -1 - std::ilogb(x * x * x * x);
   return std::min(2 + (4 * bits + k - 1) / k, k_order);
 }
