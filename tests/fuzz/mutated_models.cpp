@@ -2,11 +2,13 @@
 //   mutated_models COUNT SEED [OPTION…] FILE_OR_FOLDER…              runs COUNT cases, prints those that crash or hang
 //   mutated_models --show NUMBER SEED FILE_OR_FOLDER…                prints the text of one, for its model's folder
 //   mutated_models --times 0 SEED FILE_OR_FOLDER…                    what each file costs as it is, in ms of a processor
-// Options: --first NUMBER of the cases; --limit SECONDS of a processor that one may take, 10; --evaluations COUNT, or so many events, after which a run is left
-// (0, as without it: none is); --whole NUMBER: one in so many cases is not left, and goes the whole way of `steplap simulate`: findings,
-// extremes, errors by finer runs, summary.json; --said FILE, to which the counts so far are written now and then.
-// An answer is a run, an error of the model or a numerical failure; everything else is a finding: signals, other exceptions, memory
-// beyond 2 GB, and more than 10 s of a processor. Exit code 1 if there was a crash; hangs are printed to be explained.
+// Options: --first NUMBER of the cases; --limit SECONDS of a processor that one may take, 10; --evaluations COUNT, or so many events, after
+// which a run is left (0, as without it: none is); --whole NUMBER: one in so many cases is not left, and goes the whole way of `steplap
+// simulate`: findings, extremes, errors by finer runs, summary.json; --said FILE, to which the counts so far are written now and then.
+// An answer is a run, an error of the model, a numerical failure or, from a whole run, the stop that it is asked for after half the limit,
+// which is printed. Everything else is a finding: signals, other exceptions, memory beyond 2 GB, and more than the limit of a processor.
+// Exit code 1 if there was a crash; hangs are printed to be explained.
+#include "mbd/base/budget.h"
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
@@ -44,6 +46,7 @@ namespace {
 
 constexpr double k_run = 0.02;                       // s of simulated time
 constexpr std::uint64_t k_memory = 2'000'000'000ULL; // bytes
+constexpr double k_stops_at = 0.5;                   // share of the limit after which a whole run is asked to stop
 
 struct Options {
   std::uint64_t count = 0, seed = 1, first = 0;
@@ -58,26 +61,31 @@ struct Options {
 };
 
 struct Cases {
-  std::vector<fs::path> files;
-  std::vector<std::string> texts;
+  struct Source {
+    fs::path file;
+    std::string text;
+  };
+  std::vector<Source> sources;
+  std::size_t refused =
+      0; // the last so many sources are no models as they are (studies, a fuzzer's corpus): one case in ten is made of them
   std::uint64_t seed = 1;
 
-  std::size_t corpus = 0; ///< the last so many files are a fuzzer's corpus or studies: most of them are refused as they are
-
-  [[nodiscard]] std::size_t file_of(std::uint64_t number) const {
-    const std::size_t models = files.size() - corpus;
-    if (models == 0 || (corpus > 0 && fuzz::drawn(10, seed, number, 3) == 0)) return models + fuzz::drawn(corpus, seed, number, 1);
-    return fuzz::drawn(models, seed, number, 1);
+  [[nodiscard]] const Source& source_of(std::uint64_t number) const {
+    const std::size_t models = sources.size() - refused;
+    if (models == 0 || (refused > 0 && fuzz::drawn(10, seed, number, 3) == 0))
+      return sources[models + fuzz::drawn(refused, seed, number, 1)];
+    return sources[fuzz::drawn(models, seed, number, 1)];
   }
+  [[nodiscard]] const fs::path& file_of(std::uint64_t number) const { return source_of(number).file; }
   [[nodiscard]] std::string text_of(std::uint64_t number) const {
-    return fuzz::mutated(texts[file_of(number)], texts[fuzz::drawn(files.size(), seed, number, 2)], seed, number);
+    return fuzz::mutated(source_of(number).text, sources[fuzz::drawn(sources.size(), seed, number, 2)].text, seed, number);
   }
 };
 
 // What the watching process and the running one share.
 struct Progress {
   std::atomic<std::uint64_t> number{0};
-  std::atomic<std::uint64_t> refused{0}, failed{0}, run{0}, left{0}, whole{0};
+  std::atomic<std::uint64_t> refused{0}, failed{0}, run{0}, left{0}, whole{0}, stopped{0};
 };
 
 // To the end, or until it has taken as many evaluations as it is given.
@@ -96,25 +104,32 @@ void run_a_little(const Model& model, const System& system, long evaluations, Pr
   ++(goes_on ? progress.left : progress.run);
 }
 
-// As `steplap simulate` does it, but for the files.
-void run_whole(Model model, std::shared_ptr<const System> system, const std::string& path, Progress& progress) {
+// As `steplap simulate --time-limit` does it, but for the files: a mutated frequency may need billions of steps.
+void run_whole(Model model, std::shared_ptr<const System> system, const std::string& path, double seconds, Progress& progress) {
   const auto loaded = load_completed(std::move(model), std::move(system), path);
   for (const Finding& finding : findings_of(*loaded)) (void)text_with_place(finding);
   RunOptions options;
   options.output_step = 0.25 * *(options.end = std::min(loaded->model.simulation.end, k_run));
+  options.stop = within(Budget{seconds, {}}, {});
   const Report report = judged_run(loaded, options);
   (void)report.json();
-  ++(report.run.failure ? progress.failed : progress.run);
   ++progress.whole;
+  if (report.run.failure && report.run.failure->kind == FailureKind::stopped) throw RunStopped(report.run.failure->text);
+  ++(report.run.failure ? progress.failed : progress.run);
 }
 
-void run_one(const std::string& text, const fs::path& file, bool is_whole, long evaluations, Progress& progress) {
+void run_one(const Cases::Source& source, bool is_whole, const Options& options, Progress& progress) {
+  const std::string file = source.file.string();
   try {
-    Model model = parse_model(text, file.string(), program_catalogue());
+    Model model = parse_model(source.text, file, program_catalogue());
     std::shared_ptr<const System> system = compile(model);
     (void)check_presentation(model, *system);
-    if (is_whole) run_whole(std::move(model), std::move(system), file.string(), progress);
-    else run_a_little(model, *system, evaluations, progress);
+    if (is_whole) run_whole(std::move(model), std::move(system), file, k_stops_at * options.limit, progress);
+    else run_a_little(model, *system, options.evaluations, progress);
+  } catch (const RunStopped& stopped) {
+    ++progress.stopped;
+    std::printf("stopped: case %llu, %s: %s\n", static_cast<unsigned long long>(progress.number.load()), file.c_str(), stopped.what());
+    std::fflush(stdout); // the process may end by a signal
   } catch (const ModelError&) {
     ++progress.refused;
   } catch (const FileError&) { // a name that no folder can have
@@ -137,7 +152,7 @@ void run_one(const std::string& text, const fs::path& file, bool is_whole, long 
     const itimerval of_processor{{0, 0}, {static_cast<time_t>(options.limit), 0}};
     setitimer(ITIMER_PROF, &of_processor, nullptr);
     alarm(30 * options.limit); // whoever waits for a file takes no processor time
-    run_one(cases.text_of(i), cases.files[cases.file_of(i)], options.is_whole(i), options.evaluations, progress);
+    run_one({cases.file_of(i), cases.text_of(i)}, options.is_whole(i), options, progress);
     if (!options.said.empty() && i % 500 == 0)
       std::ofstream(options.said) << i + 1 - options.first << " of " << options.count << " cases, " << progress.run << " run, "
                                   << progress.left << " left, " << progress.refused << " refused, " << progress.failed
@@ -149,9 +164,8 @@ void run_one(const std::string& text, const fs::path& file, bool is_whole, long 
 void add_files(const fs::path& path, std::vector<fs::path>& files) {
   if (!fs::is_directory(path)) return files.push_back(path);
   for (const auto& entry : fs::recursive_directory_iterator(path)) {
-    const bool is_model =
-        entry.path().extension() == ".toml" || (!entry.path().has_extension() && path.string().find("corpus") != std::string::npos);
-    if (entry.is_regular_file() && is_model) files.push_back(entry.path());
+    const bool is_text = entry.path().extension() == ".toml" || !entry.path().has_extension(); // a corpus has no extensions
+    if (entry.is_regular_file() && is_text) files.push_back(entry.path());
   }
 }
 
@@ -178,7 +192,7 @@ int storm(const Cases& cases, const Options& options) {
     const bool is_hang = WIFSIGNALED(status) && (WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGPROF);
     ++(is_hang ? hangs : crashes);
     std::printf("%s: seed %llu, case %llu%s, %s, %s\n", is_hang ? "hang" : "crash", Number{cases.seed}, Number{at},
-                options.is_whole(at) ? " (whole)" : "", cases.files[cases.file_of(at)].c_str(), ending_of(status));
+                options.is_whole(at) ? " (whole)" : "", cases.file_of(at).c_str(), ending_of(status));
     next = at + 1;
   }
   rusage used{};
@@ -187,19 +201,19 @@ int storm(const Cases& cases, const Options& options) {
                          1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
   std::printf("%llu cases of seed %llu from %llu: %llu run, %llu left after %ld evaluations, %llu refused, %llu could not be followed, "
               "%llu the whole way, "
-              "%llu crashes, %llu beyond %u s; %.0f a second of a processor\n",
+              "%llu stopped, %llu crashes, %llu beyond %u s; %.0f a second of a processor\n",
               Number{options.count}, Number{cases.seed}, Number{options.first}, Number{progress.run}, Number{progress.left},
-              options.evaluations, Number{progress.refused}, Number{progress.failed}, Number{progress.whole}, crashes, hangs, options.limit,
-              static_cast<double>(options.count) / seconds);
+              options.evaluations, Number{progress.refused}, Number{progress.failed}, Number{progress.whole}, Number{progress.stopped},
+              crashes, hangs, options.limit, static_cast<double>(options.count) / seconds);
   return crashes > 0 ? 1 : 0;
 }
 
 void print_times(const Cases& cases, const Options& options) {
   Progress progress;
-  for (std::size_t i = 0; i < cases.files.size(); ++i) {
+  for (const Cases::Source& source : cases.sources) {
     const double before = thread_cpu_seconds();
-    run_one(cases.texts[i], cases.files[i], options.whole > 0, options.evaluations, progress);
-    std::printf("%.2f %s\n", 1e3 * (thread_cpu_seconds() - before), cases.files[i].c_str());
+    run_one(source, options.whole > 0, options, progress);
+    std::printf("%.2f %s\n", 1e3 * (thread_cpu_seconds() - before), source.file.c_str());
   }
 }
 
@@ -224,24 +238,28 @@ Options options_of(int argc, char** argv) {
   return o;
 }
 
+// Returns true if the text, as it is, is a model without errors.
+bool is_model(const Cases::Source& source) {
+  try {
+    (void)parse_model(source.text, source.file.string(), program_catalogue());
+    return true;
+  } catch (const ModelError&) {
+    return false;
+  }
+}
+
 Cases cases_of(const Options& options) {
   Cases cases;
   cases.seed = options.seed;
-  cases.files = options.files;
-  const auto is_of_corpus = [](const fs::path& file) {
-    const std::string folder = file.parent_path().string();
-    return folder.find("corpus") != std::string::npos || folder.find("studies") != std::string::npos;
-  };
-  const auto is_before = [&](const fs::path& a, const fs::path& b) { // folders list their files in any order
-    return is_of_corpus(a) != is_of_corpus(b) ? is_of_corpus(b) : a < b;
-  };
-  std::sort(cases.files.begin(), cases.files.end(), is_before);
-  cases.corpus = static_cast<std::size_t>(std::count_if(cases.files.begin(), cases.files.end(), is_of_corpus));
-  for (const fs::path& file : cases.files) {
+  std::vector<fs::path> files = options.files;
+  std::sort(files.begin(), files.end()); // folders list their files in any order
+  for (const fs::path& file : files) {
     std::ostringstream text;
     text << std::ifstream(file, std::ios::binary).rdbuf();
-    cases.texts.push_back(text.str());
+    cases.sources.push_back({file, text.str()});
   }
+  const auto refused = std::stable_partition(cases.sources.begin(), cases.sources.end(), is_model);
+  cases.refused = static_cast<std::size_t>(cases.sources.end() - refused);
   return cases;
 }
 
@@ -258,7 +276,7 @@ int main(int argc, char** argv) {
   const Cases cases = cases_of(options);
   if (options.times) return print_times(cases, options), 0;
   if (!options.shows) return storm(cases, options);
-  std::fprintf(stderr, "%s\n", cases.files[cases.file_of(options.count)].c_str());
+  std::fprintf(stderr, "%s\n", cases.file_of(options.count).c_str());
   std::fputs(cases.text_of(options.count).c_str(), stdout);
   return 0;
 }

@@ -267,6 +267,35 @@ TEST_CASE("the same scene turned by any angle moves the same way, and with a and
   CHECK((end(0.0, true) - straight).norm() < 1e-6);
 }
 
+// Contacts that share their bodies and the outline of a place it once: the force of each must not depend on which contact comes before it.
+TEST_CASE("forces of contacts between the same bodies are the same in every order") {
+  const std::string bodies = body("block", "mass = 1.0; inertia = 1.0; velocity = [0.1, -0.2]; angular_velocity = 0.3");
+  const auto contact = [](const std::string& name, double x_a, double x_b) {
+    const auto square = [](double x) {
+      return "[" + point(x - 0.1, -0.1) + ", " + point(x + 0.1, -0.1) + ", " + point(x + 0.1, 0.1) + ", " + point(x - 0.1, 0.1) + "]";
+    };
+    return element("polygon_contact", name,
+                   "a = { body = 'block', point = [0.0, 0.0] }; b = { body = 'ground', at = [0.0, -0.19] }; outline_a = " + square(x_a) +
+                       "; outline_b = " + square(x_b) + "; stiffness = 1e6; dissipation = 2.0");
+  };
+  const std::vector<std::string> names = {"left", "left again", "right"};
+  const std::vector<std::string> texts = {contact(names[0], -0.5, -0.45), contact(names[1], -0.5, -0.52), contact(names[2], 0.5, 0.47)};
+  std::vector<std::size_t> order = {0, 1, 2};
+  std::vector<double> first;
+  do {
+    std::string text = k_no_gravity + bodies;
+    for (const std::size_t i : order) text += texts[i];
+    const Run r = run(scene(text + "[simulation]\nstep = 1e-6\n"), {"rk4", 1e-6, 1e-6});
+    std::vector<double> forces;
+    for (const std::string& name : names) forces.push_back(r.series(name + ".force").front());
+    if (first.empty()) first = forces;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      CHECK(forces[i] > 0.0);
+      CHECK(forces[i] == first[i]); // to the bit
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
 TEST_CASE("a corner that falls exactly on a corner, and edges exactly on edges") {
   const std::string diamond = "outline = [[0.0, -0.2], [0.2, 0.0], [0.0, 0.2], [-0.2, 0.0]]";
   const std::string text = body("anvil", "mass = 1; inertia = 1; fixed = true; " + diamond) +

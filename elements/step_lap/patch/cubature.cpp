@@ -38,11 +38,11 @@ const std::array<PairedRule, k_most + 1>& rules() {
   return all;
 }
 
-/// Returns the smallest n with x^(2n−3−more)/4ⁿ below 2^-57. The binary exponent of x⁴ bounds x: x < 2^(-k/4).
+/// Returns the smallest n with x^(2n−3−more)/4ⁿ below 2^-57.
 int nodes_at(double x, int more) {
   constexpr int bits = 57;
   if (x < 0x1p-57) return 2 + more;
-  const int k = x < 1.0 ? -1 - std::ilogb(x * x * x * x) : 0; // 0 for NaN, too, which has no exponent
+  const int k = quarter_exponent(x);
   const int twice = 4 * bits + (3 + more) * k;
   const int n = (twice + 2 * (k + 4) - 1) / (2 * (k + 4));
   return std::clamp(n, 2 + more, k_most);

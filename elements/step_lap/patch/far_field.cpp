@@ -197,14 +197,12 @@ template <bool WithCurvature> Polar polar_of(const double* a, int row, double ka
 
 } // namespace
 
-// Returns the order n for which x^(n−2), the largest term of g and its derivatives, is below 2^-57. The binary exponent of x⁴ bounds x: x <
-// 2^(-k/4).
+// Returns the order n for which x^(n−2), the largest term of g and its derivatives, is below 2^-57.
 int FarField::needed_order(double x) {
   constexpr int bits = 57;
   if (x < 0x1p-57) return 3;
-  if (!(x < 1.0)) return k_order; // NaN, too, which has no exponent
-  const int k = -1 - std::ilogb(x * x * x * x);
-  return std::min(2 + (4 * bits + k - 1) / k, k_order);
+  const int k = quarter_exponent(x);
+  return k > 0 ? std::min(2 + (4 * bits + k - 1) / k, k_order) : k_order;
 }
 
 FarField::FarField(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius) : FarField(radius) {

@@ -45,7 +45,7 @@ public:
   void add(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& shift);
   void finish();
 
-  /// Returns the highest order n that is significant at |κ| R, at most k_order.
+  /// Returns the highest order n that is significant at |κ| R; at most k_order, which is also returned for NaN.
   [[nodiscard]] static int needed_order(double kappa_radius);
 
   /// Returns h with its derivatives. Precondition: |ω| radius ≤ |v| / k_far_ratio, v not zero.

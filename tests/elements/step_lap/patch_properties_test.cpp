@@ -1,8 +1,11 @@
 // What every limit surface must be: convex, even, homogeneous, normal, additive (Goyal, Ruina and
 // Papadopoulos, Wear 143, 1991), and the same wherever the scene stands.
+#include "elements/step_lap/patch/far_field.h"
 #include "patch_cases.h"
 
+#include <cmath>
 #include <doctest/doctest.h>
+#include <limits>
 
 using namespace steplap;
 using namespace steplap::patch_cases;
@@ -215,4 +218,15 @@ TEST_CASE("patch: unusable tractions are refused, empty pieces left out") {
   patch.clear({1, 0});
   CHECK(patch.empty());
   CHECK(patch.force() == 0);
+}
+
+// Stages that are rejected later may have no finite velocities. x^(n−2) < 2^-57 at the order n, as far as k_order reaches.
+TEST_CASE("the order of the far field suffices, and is the highest one for what is no number") {
+  CHECK(FarField::needed_order(std::numeric_limits<double>::quiet_NaN()) == FarField::k_order);
+  CHECK(FarField::needed_order(1.0) == FarField::k_order);
+  for (double x = 0x1p-56; x < 1.0; x *= 1.3) {
+    const int n = FarField::needed_order(x);
+    CAPTURE(x);
+    CHECK((n == FarField::k_order || std::pow(x, n - 2) < 0x1p-57));
+  }
 }
