@@ -4,6 +4,7 @@
 #include "mbd/system/law_group.h"
 #include "mbd/system/own_states.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace steplap {
@@ -337,8 +338,15 @@ formula = "-'1 N m s' * rate"
     k.stage = 1;
     k.holds<T>();
     k.compile = compile_formula_force;
+    // A formula of signals, parameters and time is a load; with places or velocities it may be a spring.
+    k.acts_from_outside = [](const Element& element, const Model& model) {
+      const std::vector<std::string> names = Formula(static_cast<const T&>(element).formula, "formula", {}).names();
+      return std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+        return model.parameters.find(name) || std::any_of(model.signals.begin(), model.signals.end(),
+                                                          [&](const SignalEntry& signal) { return signal.definition->name == name; });
+      });
+    };
     // A formula without names is a constant load.
-    k.acts_from_outside = true;
     k.has_constant_load = [](const Element& element) {
       return Formula(static_cast<const T&>(element).formula, "formula", {}).names().empty();
     };

@@ -132,7 +132,7 @@ force = [1e3, 0.0]
 )";
     k.holds<Load>();
     k.compile = compile_load;
-    k.acts_from_outside = true;
+    k.acts_from_outside = [](const Element&, const Model&) { return true; };
     k.has_constant_load = [](const Element& element) {
       const auto& load = static_cast<const Load&>(element);
       return load.force != Vec2::Zero() || load.couple != 0.0;

@@ -133,7 +133,7 @@ signal = 'stroke'
 )";
     k.holds<T>();
     k.compile = compile_prescribed;
-    k.acts_from_outside = true;
+    k.acts_from_outside = [](const Element&, const Model&) { return true; };
     return k;
   }();
   return kind;

@@ -91,7 +91,7 @@ public:
 
   /// Factorises a in place of the previous matrix.
   void factor(const MatX& a);
-  [[nodiscard]] double least_pivot() const;     ///< min |U_ii|
+  [[nodiscard]] double least_pivot() const;     ///< min |U_ii|; infinite for an empty matrix
   void solve(const VecX& right, VecX& x) const; ///< x = a⁻¹ right; `right` and `x` must be different vectors
   [[nodiscard]] VecX solve(const VecX& right) const;
   /// Returns a⁻ᵀ right.

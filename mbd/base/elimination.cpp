@@ -4,6 +4,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include <limits>
+
 namespace steplap {
 
 MatX solve_lower(const MatX& a, const MatX& right) { return a.llt().matrixL().solve(right); }
@@ -22,7 +24,10 @@ DenseLu::DenseLu(DenseLu&&) noexcept = default;
 DenseLu& DenseLu::operator=(DenseLu&&) noexcept = default;
 
 void DenseLu::factor(const MatX& a) { factor_->compute(a); }
-double DenseLu::least_pivot() const { return factor_->matrixLU().diagonal().cwiseAbs().minCoeff(); }
+double DenseLu::least_pivot() const {
+  const auto& lu = factor_->matrixLU();
+  return lu.size() > 0 ? lu.diagonal().cwiseAbs().minCoeff() : std::numeric_limits<double>::infinity();
+}
 void DenseLu::solve(const VecX& right, VecX& x) const { x.noalias() = factor_->solve(right); }
 VecX DenseLu::solve(const VecX& right) const { return factor_->solve(right); }
 VecX DenseLu::solve_transposed(const VecX& right) const { return factor_->transpose().solve(right); }

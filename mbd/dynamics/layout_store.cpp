@@ -28,6 +28,7 @@ std::size_t usual_count(const System& system) {
 LayoutStore::LayoutStore(const System& system) : system_(system), most_(usual_count(system)) {}
 
 LayoutStore::Found LayoutStore::at(const State& state, Coordinates coordinates) {
+  discarded_.clear();
   layout_key(state, coordinates, key_);
   const auto known =
       std::lower_bound(by_key_.begin(), by_key_.end(), key_, [](const Place& place, const LayoutKey& key) { return place->key < key; });
@@ -58,7 +59,7 @@ void LayoutStore::give_up_beyond(std::size_t count) {
 
 void LayoutStore::clear() {
   by_key_.clear();
-  layouts_.clear();
+  discarded_.splice(discarded_.end(), layouts_);
   merged_.clear();
   program_count_ = 0;
 }

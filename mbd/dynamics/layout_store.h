@@ -20,7 +20,7 @@ public:
   /// `system` must outlive this object.
   explicit LayoutStore(const System& system);
 
-  /// Result of at(). The reference is valid until the next call of at() or clear().
+  /// Result of at(). The reference is valid until the next call of at(), also after clear().
   struct Found {
     Layout& layout;
     bool is_new;
@@ -47,6 +47,7 @@ private:
 
   const System& system_;
   std::list<Layout> layouts_;      ///< most recently used first
+  std::list<Layout> discarded_;    ///< by clear(); kept until the next at(), because the last result is still in use
   std::vector<Place> by_key_;      ///< sorted by key, for the look-up at every event
   std::list<MergedBodies> merged_; ///< relative poses of merged bodies, for each set of merging joints since clear()
   LayoutKey key_;

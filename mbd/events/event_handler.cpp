@@ -606,11 +606,10 @@ void EventHandler::record_blows(const std::vector<Impact>& impacts_before, const
 }
 
 // Records pairs of which one element began to slip while the other stuck close to its bound. Ropes and locked clutches have no bound and
-// are excluded, as are groups that share a load, because all elements of a group have the same event functions.
+// are excluded, as are elements that shared a load, because all elements of a group have the same event functions.
 void EventHandler::record_simultaneous_slips(const EventTransaction& event) {
   if (event.event_value_at.empty()) return;
   const std::vector<FrictionState>&before = event.friction_before, &now = event.now.friction;
-  const LoadSharing* const sharing = dynamics_.sharing();
   const auto stuck = [&](std::size_t f) {
     const FrictionUnit& unit = system_.frictions[f];
     return before[f].phase == FrictionPhase::stick && !unit.friction->never_slips() && impact_index(unit) < 0;
@@ -621,8 +620,7 @@ void EventHandler::record_simultaneous_slips(const EventTransaction& event) {
   if (first == before.size()) return;
   for (std::size_t f = 0; f < before.size(); ++f) {
     const FrictionUnit& unit = system_.frictions[f];
-    const bool is_in_group = sharing && sharing->group_of(static_cast<int>(f)) >= 0;
-    if (now[f].phase != FrictionPhase::stick || is_in_group || !stuck(f)) continue;
+    if (now[f].phase != FrictionPhase::stick || event.shares_load_at[f] != 0 || !stuck(f)) continue;
     const double share = share_of_bound(unit, event.event_value_at);
     if (!(share > 1.0 - k_near_bound)) continue;
     for (std::size_t g = first; g < before.size(); ++g)
@@ -652,7 +650,12 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, const std
   forget_moved_layouts(state);
   modes_.evaluate(state);
   const auto sticks = [](const FrictionState& friction) { return friction.phase == FrictionPhase::stick; };
-  if (std::count_if(state.friction.begin(), state.friction.end(), sticks) > 1) event.event_value_at = dynamics_.event_value();
+  if (std::count_if(state.friction.begin(), state.friction.end(), sticks) > 1) {
+    event.event_value_at = dynamics_.event_value();
+    const LoadSharing* const sharing = dynamics_.sharing();
+    for (std::size_t f = 0; f < state.friction.size(); ++f)
+      event.shares_load_at.push_back(sharing && sharing->group_of(static_cast<int>(f)) >= 0 ? 1 : 0);
+  }
 
   switch_units(event, fired);
   follow_breakpoint(event);

@@ -20,7 +20,9 @@ struct EventTransaction {
   const std::vector<FrictionState> friction_before;
   const std::vector<Impact> impacts_before;
   const std::vector<double>* event_value_before = nullptr; ///< at a breakpoint: all event functions just before it; else null
-  std::vector<double> event_value_at;                      ///< event functions at the event, before any change; only if two elements stick
+  /// At the event, before any change, and only if two elements stick: event functions; per friction element: it shares a load with others.
+  std::vector<double> event_value_at;
+  std::vector<char> shares_load_at;
 
   std::vector<char> has_switched;  ///< per slot: the unit has switched its mode
   bool is_loading_changed = false; ///< normal forces may have begun or ended, because a contact or a signal changed

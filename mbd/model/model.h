@@ -101,8 +101,8 @@ struct ElementKind {
   /// Returns true if the element exerts a constant prescribed force in addition to its signals. Null for kinds whose forces depend on the
   /// motion alone.
   bool (*has_constant_load)(const Element& element) = nullptr;
-  /// True for loads and prescribed motions: they act whatever the bodies do, so they hold no body.
-  bool acts_from_outside = false;
+  /// Returns true for loads and prescribed motions: they act whatever the bodies do, so they hold no body. Null: false.
+  bool (*acts_from_outside)(const Element& element, const Model& model) = nullptr;
   /// Returns the largest friction coefficient of the element and its source. Null for kinds without dry friction, and for tyres and sheets,
   /// whose coefficients have fixed ranges.
   GivenFriction (*friction)(const Element& element) = nullptr;

@@ -279,6 +279,7 @@ public:
       const double part = shape.dot(nudge_) / shape.dot(fastest);
       if (std::abs(part) < k_least_fastest) nudge_ += (std::copysign(k_least_fastest, part) - part) * fastest;
     }
+    if (!nudge_.allFinite()) throw NumericalFailure("the bodies lie so far apart that nudged poses are beyond all numbers");
   }
 
   // Returns true if half the difference of two runs, from the nudge and from its mirror image, grows along `shape` as `course` predicts.

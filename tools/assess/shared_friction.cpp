@@ -68,7 +68,8 @@ std::vector<std::string> holders_of(const DrivenModel& model, const Compiled& co
   for (const ElementEntry& entry : whole.elements) {
     const std::set<std::string> bodies = bodies_of(entry, body_of_marker);
     if (left_out.contains(entry.element->name)) pair.insert(bodies.begin(), bodies.end());
-    else if (!entry.kind->acts_from_outside && !bodies.empty()) edges.emplace_back(entry.element->name, bodies);
+    else if (!bodies.empty() && !(entry.kind->acts_from_outside && entry.kind->acts_from_outside(*entry.element, whole)))
+      edges.emplace_back(entry.element->name, bodies);
   }
   std::set<std::string> load;
   for (const std::string& body : pair)

@@ -1,6 +1,7 @@
 // Numbers that no table can mean, and sizes that no machine holds, are errors of the model or are computed with: they never end the program.
 #include "mbd/base/stop.h"
 #include "mbd/run/loaded_model.h"
+#include "mbd/run/report.h"
 #include "mbd/run/run.h"
 #include "transformer/program.h"
 
@@ -194,6 +195,28 @@ TEST_CASE("a search for the rest of bodies 1e8 m apart ends") {
   }
   CAPTURE(asked);
   CHECK(has(problem, "no stable equilibrium"));
+}
+
+// Squares of such places are infinite, and so were the nudges by which the balance of a run is tried.
+TEST_CASE("a run with bodies beyond all distances has a report, in which its balance is unknown") {
+  RunOptions options;
+  options.end = 0.01;
+  const std::string beads = STEPLAP_SOURCE "/tests/data/formulas/row_of_carts.toml";
+  const auto loaded =
+      load_model(beads, {"body.bead 0.position=[0, 1e300]", "body.bead 1.position=[1.1, 1e300]", "body.bead 2.position=[2.2, 1e300]"});
+  CHECK(has(judged_run(loaded, options).estimate.balance_unknown, "beyond all numbers"));
+}
+
+// Matrices without rows have no pivot.
+TEST_CASE("a scene in which nothing moves runs by every method") {
+  const std::string deck = "[simulation]\nend = 0.1\n[[body]]\nname = \"deck\"\nfixed = true\n";
+  for (const char* const method : {"auto", "dop853", "tsit5", "rodas5p", "rk4", "moreau"}) {
+    CAPTURE(method);
+    const std::vector<std::string> settings = {std::string("simulation.integrator=") + method, "simulation.step=0.01"};
+    const Report report = judged_run(load_model_text(deck, "deck.toml", settings));
+    CHECK_FALSE(report.run.failure);
+    CHECK(report.run.result.final_state.t == 0.1);
+  }
 }
 
 // Accelerations of 1e320 m/s² are infinite, so the step is NaN; with 1e300 m/s² it shrinks to zero. Neither is less than a smallest step.

@@ -273,6 +273,24 @@ TEST_CASE("which frictions are one: by name, by shared_friction, by sums; not tw
   CHECK(shared.pass({&one_of, &two_of}, {&quiet, &quiet}).at(0).use == doctest::Approx(4e4 * std::sqrt(2.0) / 6e4).epsilon(1e-12));
 }
 
+// A load acts whatever the unit does; a spring by formula takes a part of what the friction would have to hold.
+TEST_CASE("a force by formula holds the load if it depends on the motion, not if it is a function of time, signals and parameters") {
+  const std::string along = text_of(k_planes + "long_rec.toml"), across = text_of(k_planes + "cross_rec.toml");
+  const auto holders = [&](const std::string& formula) {
+    const std::string force =
+        "[parameters]\nstiff = \"1 kN/m\"\nlarge = \"2 kN\"\n[[signal]]\nkind = \"constant\"\nname = \"gust\"\nvalue = "
+        "0.5\n[[element]]\nkind = \"force\"\nname = \"by formula\"\na = \"unit\"\ncoordinate = \"x\"\nformula = \"" +
+        formula + "\"\n";
+    std::vector<DrivenModel> models = {driven(along + force), driven(across)};
+    return find_shared_frictions(models).at(0).planes[0].holders;
+  };
+  CHECK(holders("'1 kN'").empty());
+  CHECK(holders("large * gust + '1 N/s' * t").empty());
+  CHECK(holders("-stiff * value") == std::vector<std::string>{"by formula"});
+  CHECK(holders("-'1 kN s/m' * rate") == std::vector<std::string>{"by formula"});
+  CHECK(holders("-stiff * unit.x") == std::vector<std::string>{"by formula"});
+}
+
 TEST_CASE("two models that load one contact unlike are not of one machine: open") {
   Machine machine;
   machine.across.replace(machine.across.find("\"20 t\""), 6, "\"24 t\"");
