@@ -41,6 +41,7 @@ struct ForceEntry {
   double zero = 0.0; ///< for an angle: relative angle of the markers in their bodies, rad
   std::vector<SwitchScale> switches = {};
   int link = 0;
+  int element = 0;     ///< index in System::element_names
   int unit = -1;       ///< index of the unit whose mode contains the switches; −1: the formula has no switches
   int first_event = 0; ///< index of the unit's first event function
 
@@ -134,7 +135,7 @@ public:
 
   void register_formulas(std::vector<FormulaInMotion>& out) const override {
     for (const ElementData& entry : entries)
-      out.push_back({&entry.formula, [&entry](const Evaluation& e) { return entry.own_now(e); }, entry.unit});
+      out.push_back({&entry.formula, [&entry](const Evaluation& e) { return entry.own_now(e); }, entry.unit, entry.element});
   }
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const ElementData& entry : entries) {
@@ -290,6 +291,7 @@ void compile_formula_force(const Element& element, SystemBuilder& builder) {
     return builder.error(
         "'formula' has no finite value at the start: something is divided by zero, or a root or logarithm is taken of what has none");
   entry.switches = scales_of(entry.formula, start, own);
+  entry.element = builder.element_index();
   const bool jumps = entry.formula.program().has_comparisons();
   if (e.energy == "work")
     jumps ? add<FormulaForceGroup<true, true>>(builder, std::move(entry), is_angle)

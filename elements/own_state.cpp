@@ -36,7 +36,7 @@ void compile_state(const Element& element, SystemBuilder& builder) {
   const auto& state = static_cast<const OwnState&>(element);
   OwnStateGroup& group = builder.group<OwnStateGroup>();
   OwnStateGroup::ElementData entry{MotionFormula(builder, {state.rate, "rate", unit_of_rate(state), "-", "-"}),
-                                   place_of_state(builder, state)};
+                                   place_of_state(builder, state), builder.element_index()};
   if (!entry.rate.is_valid()) return;
   const std::vector<double> inner = start_of_states(builder);
   Evaluation start;

@@ -61,6 +61,7 @@ public:
 private:
   enum class Hold : unsigned char { none, sticks, slides };
   void measure_scene();
+  [[nodiscard]] bool is_exhausted() const; ///< the search has taken as many evaluations as it may
   void linearise();
   [[nodiscard]] double step_size(const VecX& step) const;
   bool move_to(const std::vector<double>& from, const VecX& step);

@@ -67,6 +67,7 @@ void Statics::set_modes(State& state) {
 }
 
 void Statics::evaluate(State& state) {
+  ++evaluations_;
   state_ = &state;
   evaluation_.t = state.t;
   evaluation_.mode = state.mode.data();

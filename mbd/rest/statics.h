@@ -29,6 +29,7 @@ public:
 
   /// Evaluates forces at the poses, time, friction states and bases of rows in `state`. Sets the modes in `state` from the poses.
   void evaluate(State& state);
+  [[nodiscard]] long evaluations() const { return evaluations_; } ///< number of calls of evaluate()
   /// Lists the rows that are active in `state`, those of joints and drives first. `left_out`: flags by friction row (slot in
   /// Snapshot::friction_force) of dependent rows to be omitted; empty: none.
   void collect_rows(const State& state, const std::vector<char>& left_out = {});
@@ -62,6 +63,7 @@ private:
 
   const System& system_;
   int n_ = 0, bilateral_count_ = 0;
+  long evaluations_ = 0;
   const State* state_ = nullptr;
   Evaluation evaluation_;
   FrictionScratches scratch_;

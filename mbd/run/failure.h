@@ -6,6 +6,7 @@
 #include "mbd/model/model.h"
 #include "mbd/system/system.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,5 +34,8 @@ struct Failure {
 
 /// Converts an exception into a Failure. `t` is the time that the run has reached, s.
 [[nodiscard]] Failure failure_of(const NumericalFailure& failure, const Model& model, const System& system, double t);
+/// If a formula of a force or state has no finite value immediately after `last`, or within a fixed step (0: steps are adaptive), returns the
+/// failure that names its element.
+[[nodiscard]] std::optional<Failure> formula_failure(const State& last, double step, const Model& model, const System& system);
 
 } // namespace steplap

@@ -4,6 +4,7 @@
 #include "mbd/base/stop.h"
 #include "mbd/run/findings.h"
 #include "mbd/run/with_settings.h"
+#include "mbd/trust/global_error.h"
 
 #include <stdexcept>
 
@@ -29,6 +30,7 @@ Run run_model(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& op
   const StopScope stopping(options.stop);
   std::shared_ptr<const LoadedModel> loaded = with_settings(std::move(as_loaded), options);
   SimulationOptions simulation_asked = simulation_options(*loaded, options);
+  const double fixed_step = is_adaptive(*loaded->system, simulation_asked.integrator) ? 0.0 : simulation_asked.settings.step;
   simulation_asked.notes_motion = options.estimating != Estimating::never; // recorded motion decides whether an equilibrium is stable
   bool is_over = false; // the run has failed; result() then still samples the last state, and must not be stopped
   simulation_asked.progress = [&is_over, &options](double t) {
@@ -46,6 +48,9 @@ Run run_model(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& op
     is_over = true;
   }
   run.result = std::move(simulation).result();
+  if (run.failure && run.failure->kind == FailureKind::numerical)
+    if (std::optional<Failure> named = formula_failure(run.result.final_state, fixed_step, loaded->model, *loaded->system))
+      run.failure = std::move(named);
   if (run.failure) run.failure->t = run.result.final_state.t;
   run.loaded = std::move(loaded);
   return run;

@@ -95,7 +95,8 @@ private:
 struct FormulaInMotion {
   const MotionFormula* formula = nullptr; ///< owned by its group
   std::function<OwnCoordinate<double>(const Evaluation& e)> own = nullptr;
-  int unit = -1; ///< index of its mode, the bits of its switches; -1 if it has none
+  int unit = -1;   ///< index of its mode, the bits of its switches; -1 if it has none
+  int element = 0; ///< index in System::element_names
 };
 
 /// Derivatives of an operand with respect to pose and velocity of one body.

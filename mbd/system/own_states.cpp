@@ -113,7 +113,7 @@ void OwnStateGroup::add_state_jacobian(const Evaluation& e, StateJacobian& out) 
 }
 
 void OwnStateGroup::register_formulas(std::vector<FormulaInMotion>& out) const {
-  for (const ElementData& entry : entries) out.push_back({&entry.rate, nullptr, entry.unit});
+  for (const ElementData& entry : entries) out.push_back({&entry.rate, nullptr, entry.unit, entry.element});
 }
 
 void OwnStateGroup::mark_bodies(std::vector<char>& is_used) const {

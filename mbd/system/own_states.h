@@ -45,6 +45,7 @@ public:
   struct ElementData {
     MotionFormula rate;
     StatePlace place;
+    int element = 0;     ///< index in System::element_names
     int unit = -1;       ///< index of its mode; −1: the formula has no switches
     int first_event = 0; ///< index of its first event function
     std::vector<SwitchScale> switches = {};

@@ -1,5 +1,7 @@
 // Numbers that no table can mean, and sizes that no machine holds, are errors of the model or are computed with: they never end the program.
 #include "mbd/base/stop.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/descent.h"
 #include "mbd/run/loaded_model.h"
 #include "mbd/run/report.h"
 #include "mbd/run/run.h"
@@ -195,6 +197,45 @@ TEST_CASE("a search for the rest of bodies 1e8 m apart ends") {
   }
   CAPTURE(asked);
   CHECK(has(problem, "no stable equilibrium"));
+}
+
+// Gaps of such bodies drown in rounding, so that each step of the search measures them thousands of times.
+TEST_CASE("a search for the rest of bodies that cannot be measured gives up") {
+  const std::pair<std::string, std::string> cases[] = {
+      {STEPLAP_SOURCE "/models/machines/forklift.toml", "body.truck.position=[-0.95, 1e9]"},
+      {STEPLAP_SOURCE "/tests/data/contacts/hop_segment.toml", "body.box.position=[0, -1e300]"}};
+  for (const auto& [path, setting] : cases) {
+    CAPTURE(path);
+    const auto loaded = load_model(path, {setting});
+    State state = assembled_start(*loaded->system, assemble(loaded->model, *loaded->system));
+    Descent descent(*loaded->system, state);
+    CHECK(descent.run() == DescentEnd::no_way);
+    CHECK(descent.statics().evaluations() < 300'000);
+  }
+}
+
+TEST_CASE("a run ends with the name of the element whose formula loses its value") {
+  const std::string head = "[simulation]\nend = 2.0\n[[body]]\nname = \"box\"\nmass = 1.0\ninertia = 1.0\nposition = [1.0, 0.0]\n"
+                           "velocity = [-1.0, 0.0]\n";
+  const auto force = [&head](const std::string& formula) {
+    return head + "[[element]]\nkind = \"force\"\nname = \"magnet\"\na = \"box\"\ncoordinate = \"x\"\nformula = \"" + formula + "\"\n";
+  };
+  const std::string cooling = "[[state]]\nname = \"heat\"\nstart = 0.01\nrate = \"-'0.01 1/s'/sqrt(heat)\"\n";
+  const std::string logarithm = force("-'1e-3 N'*ln(value/'1 m')");
+  const auto failure_with = [](const std::string& text, const std::vector<std::string>& settings) {
+    const Run run = run_model(load_model_text(text, "formula.toml", settings));
+    REQUIRE(run.failure);
+    return run.failure->text;
+  };
+  for (const std::string method : {"auto", "dop853", "tsit5", "rodas5p"}) {
+    CAPTURE(method);
+    const std::vector<std::string> settings = {"simulation.integrator=" + method};
+    CHECK(has(failure_with(logarithm, settings), "the formula of 'magnet' has no finite value after t = 1.00025"));
+    CHECK(has(failure_with(head + cooling, settings), "the formula of 'heat' has no finite value after t = 0.0666"));
+    // 1/x grows beyond all bounds before zero, but is finite there and beyond.
+    CHECK(has(failure_with(force("-'1e-3 N m'/value"), settings), "step size fell to"));
+  }
+  CHECK(has(failure_with(logarithm, {"simulation.integrator=rk4", "simulation.step=1e-3"}), "the formula of 'magnet' has no finite value"));
 }
 
 // Squares of such places are infinite, and so were the nudges by which the balance of a run is tried.
