@@ -13,6 +13,7 @@
 #include "mbd/rest/freedom.h"
 #include "mbd/run/acted_loads.h"
 #include "mbd/run/action_findings.h"
+#include "mbd/run/asked_channels.h"
 #include "mbd/run/edges.h"
 #include "mbd/run/open_end.h"
 #include "mbd/run/plausible_run.h"
@@ -272,6 +273,16 @@ void note_restless_start(const LoadedModel& loaded, Findings& findings) {
                       body ? body->where : Location{}});
 }
 
+void note_restricted_extremes(const LoadedModel& loaded, Findings& findings) {
+  const std::vector<Channel>& channels = loaded.system->channels;
+  const auto left_out = std::count_if(channels.begin(), channels.end(), [&](const Channel& c) { return is_not_asked(c, channels.size()); });
+  if (left_out == 0) return;
+  findings.push_back({"extremes_left_out", FindingLevel::note,
+                      "Of " + std::to_string(channels.size()) + " channels, extremes of " + std::to_string(left_out) +
+                          " are left out, since no [[plot]] and no list of [output] names them: channels = [\"*\"] asks for all",
+                      loaded.model.output.where});
+}
+
 // Returns true if a table created the body. The free ends of such bodies (beams) are intended.
 bool is_made_by_table(const Model& model, const std::string& name) {
   return std::any_of(model.tables.begin(), model.tables.end(),
@@ -459,6 +470,7 @@ std::vector<Finding> findings_of(const LoadedModel& loaded) {
     warn(findings, "no_channel", "no channel matches 'channels' of [output]: the trajectory will hold the time only", model.output.where);
   for (const std::string& name : loaded.plots_left_out)
     warn(findings, "plot_left_out", "plot '" + name + "' is left out: not all of its channels are in 'channels' of [output]");
+  note_restricted_extremes(loaded, findings);
   note_restless_start(loaded, findings);
   return findings;
 }

@@ -7,6 +7,7 @@
 #include "mbd/model/completion.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/start.h"
+#include "mbd/run/asked_channels.h"
 #include "mbd/run/failure.h"
 #include "mbd/run/tipping.h"
 #include "mbd/simulation/trajectory.h"
@@ -51,6 +52,12 @@ double trajectory_numbers(const Model& model, const System& system) {
 
 namespace {
 
+std::unique_ptr<System> compiled(const Model& model) {
+  std::unique_ptr<System> system = compile(model);
+  restrict_extremes(model, *system);
+  return system;
+}
+
 // Assembles the joints. If this is impossible, the error is reported as an error of the model.
 void put_together(LoadedModel& loaded) {
   refuse_endless_output(loaded.model, *loaded.system);
@@ -69,7 +76,7 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std
   const InputFiles read; // must outlive the signals that are built here
   loaded->views = catalogue.views;
   loaded->model = read_model(path, catalogue, overrides, &loaded->text);
-  loaded->system = compile(loaded->model);
+  loaded->system = compiled(loaded->model);
   loaded->inputs = read.files();
   put_together(*loaded);
   return loaded;
@@ -85,7 +92,7 @@ std::shared_ptr<const LoadedModel> load_model_text(const std::string& text, cons
   note_input(path, text, false);
   loaded->views = catalogue.views;
   loaded->model = parse_model_text(text, path, catalogue, overrides, loaded->text);
-  loaded->system = compile(loaded->model);
+  loaded->system = compiled(loaded->model);
   loaded->inputs = read.files();
   put_together(*loaded);
   return loaded;
@@ -93,7 +100,7 @@ std::shared_ptr<const LoadedModel> load_model_text(const std::string& text, cons
 
 std::shared_ptr<const LoadedModel> load_given(const Model& given, const std::string& name, std::shared_ptr<const KindViews> views) {
   Model whole = completed(given);
-  std::shared_ptr<const System> system = compile(whole);
+  std::shared_ptr<const System> system = compiled(whole);
   return load_completed(std::move(whole), std::move(system), name, std::move(views));
 }
 

@@ -1,5 +1,6 @@
 #include "mbd/formula/unit_dimension.h"
 #include "mbd/io/digest.h"
+#include "mbd/run/asked_channels.h"
 #include "mbd/run/ordered_json.h"
 #include "mbd/run/overview.h"
 #include "mbd/run/prominence.h"
@@ -182,7 +183,8 @@ Json extremes_of(const ChannelRange& range, const Report& report, MeaningIndex& 
 
 Json extremes_json(const Report& report, MeaningIndex& meanings) {
   Json json = object_with_room(report.ranges().size());
-  for (const ChannelRange& range : report.ranges()) append(json, range.channel->name) = extremes_of(range, report, meanings);
+  for (const ChannelRange& range : report.ranges())
+    if (!is_not_asked(*range.channel, report.ranges().size())) append(json, range.channel->name) = extremes_of(range, report, meanings);
   return json;
 }
 
@@ -460,6 +462,7 @@ void write_summary(const Report& report, const FileRecords& files, const FileSin
   MeaningIndex meanings;
   bool is_first = true;
   for (const ChannelRange& range : report.ranges()) {
+    if (is_not_asked(*range.channel, report.ranges().size())) continue;
     Json entry = Json::object();
     append(entry, range.channel->name) = extremes_of(range, report, meanings);
     text += (is_first ? "" : ",") + entries_text(entry, "  ");

@@ -3,6 +3,7 @@
 #include "mbd/base/number_text.h"
 #include "mbd/io/standalone_text.h"
 #include "mbd/model/validate.h"
+#include "mbd/run/asked_channels.h"
 
 #include <algorithm>
 #include <utility>
@@ -63,7 +64,8 @@ std::shared_ptr<const LoadedModel> with_settings(std::shared_ptr<const LoadedMod
   model.output = std::move(settings.output);
   check(model, options);
   const InputFiles read; // must outlive the signals that are built here
-  std::shared_ptr<const System> system = compile(model);
+  std::unique_ptr<System> system = compile(model);
+  restrict_extremes(model, *system);
   if (!loaded->inputs.empty()) refuse_changed(read.files(), loaded->inputs);
   auto laid = std::make_shared<LoadedModel>(*load_completed(std::move(model), std::move(system), loaded->path, loaded->views));
   laid->overrides = loaded->overrides;

@@ -87,7 +87,7 @@ void add_channels(const ActionGroup& group, const System& first, System& system)
   const auto is_same = [](const Channel& a, const Channel& b) { return a.name == b.name; };
   for (const auto& addition : group.additions) addition(system);
   const std::vector<Channel> added(system.channels.begin() + static_cast<std::ptrdiff_t>(own), system.channels.end());
-  system.channels.resize(own);
+  while (system.channels.size() > own) system.channels.pop_back();
   for (std::size_t i = own; i < first.channels.size(); ++i) {
     const auto found =
         std::find_if(added.begin(), added.end(), [&](const Channel& channel) { return is_same(channel, first.channels[i]); });
@@ -210,7 +210,7 @@ void ActionFollower::change_over(std::unique_ptr<RunLeg>& leg, const Arrangement
     leg->close(false);
     auto next = std::make_unique<RunLeg>(*leg, change);
     statistics_.push_back(leg->statistics());
-    ranges_.push_back(leg->ranges());
+    ranges_.push_back(leg->take_ranges());
     for (FaceTravel& travel : leg->face_travels()) face_travels_.push_back(std::move(travel));
     leg = std::move(next);
   } catch (const ModelError& error) { // the changed elements are inconsistent

@@ -25,6 +25,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace steplap {
@@ -81,6 +82,8 @@ public:
 
   /// Returns the ranges in the order of the system's channels; complete after finish().
   [[nodiscard]] const std::vector<ChannelRange>& ranges() const { return ranges_; }
+  /// As ranges(), which is empty from then on.
+  [[nodiscard]] std::vector<ChannelRange> take_ranges() { return std::exchange(ranges_, {}); }
 
   /// Returns by how much contacts pressed beyond the ends of their parts (face_travel.h).
   [[nodiscard]] std::vector<FaceTravel> face_travels() const { return faces_.travels(); }

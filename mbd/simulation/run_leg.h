@@ -60,8 +60,8 @@ public:
   [[nodiscard]] const std::string& stop_reason() const { return handler_.stop_reason(); }
   /// Returns the statistics of this leg; CPU time is not included.
   [[nodiscard]] RunStatistics statistics() const;
-  /// Returns the ranges of all channels, if requested; complete after close() or the end.
-  [[nodiscard]] std::vector<ChannelRange> ranges() const { return extremes_ ? extremes_->ranges() : std::vector<ChannelRange>{}; }
+  /// Returns the ranges of all channels, if requested. To be called once, after close() or the end.
+  [[nodiscard]] std::vector<ChannelRange> take_ranges() { return extremes_ ? extremes_->take_ranges() : std::vector<ChannelRange>{}; }
   /// Returns by how much contacts pressed beyond the ends of their parts in this leg (face_travel.h); empty without extremes.
   [[nodiscard]] std::vector<FaceTravel> face_travels() const { return extremes_ ? extremes_->face_travels() : std::vector<FaceTravel>{}; }
   /// Computes the final values of a failed run, as far as known.

@@ -86,7 +86,7 @@ RunStatistics Simulation::statistics() const {
 RunResult Simulation::result() && {
   leg_->break_off();
   RunResult result;
-  result.ranges = leg_->ranges();
+  result.ranges = leg_->take_ranges();
   if (actions_) result.ranges = actions_->joined_ranges(std::move(result.ranges));
   for (std::size_t c = 0; c < result.ranges.size(); ++c) result.ranges[c].channel = &system_.channels[c];
   if (actions_) result.face_travels = actions_->face_travels();

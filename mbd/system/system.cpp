@@ -93,6 +93,12 @@ const Channel* System::find_channel(const std::string& name) const {
   return nullptr;
 }
 
+Channel System::make_channel(std::string name, std::string_view unit, const ChannelText& text,
+                             std::function<double(const Snapshot&)> value) {
+  return {std::move(name),         texts.stored(unit),       texts.stored(text.meaning),
+          texts.stored(text.sign), texts.stored(text.codes), std::move(value)};
+}
+
 // --- SystemBuilder ------------------------------------------------------------------------------
 
 SystemBuilder::SystemBuilder(const Model& model, const std::vector<std::string>* wanted)
@@ -507,9 +513,7 @@ Channel& SystemBuilder::enter_channel(Use use, std::string_view owner, std::stri
   std::string whole(owner);
   if (!whole.empty()) whole.append(1, '.');
   whole.append(name);
-  Channel channel{std::move(whole), std::string(unit), std::string(text.meaning), acting_ ? value_while_inactive(value) : std::move(value)};
-  channel.sign = text.sign;
-  channel.codes = text.codes;
+  Channel channel = acting().make_channel(std::move(whole), unit, text, acting_ ? value_while_inactive(value) : std::move(value));
   if (use == Use::channel) return acting().channels.emplace_back(std::move(channel));
   return *acting().operands.emplace_back(std::make_unique<Channel>(std::move(channel)));
 }

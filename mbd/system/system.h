@@ -15,6 +15,7 @@
 #include <string_view>
 #include <typeinfo>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace steplap {
@@ -91,16 +92,27 @@ enum class ChannelRole : std::uint8_t {
   strength_use, ///< force over the strength of the element, at which it breaks
 };
 
-/// A named result of a run: a scalar function of the snapshot.
+/// Texts that channels share: a scene has some 50 different ones, and up to a million channels. Addresses are stable.
+class SharedTexts {
+public:
+  /// Returns the stored text, which exists as long as this object.
+  [[nodiscard]] const std::string& stored(std::string_view text) { return *texts_.emplace(text).first; }
+
+private:
+  std::unordered_set<std::string> texts_;
+};
+
+/// A named result of a run: a scalar function of the snapshot. References refer to System::texts.
 struct Channel {
   std::string name;                             ///< "<element>.<quantity>"
-  std::string unit;                             ///< SI; "" = none
-  std::string doc;                              ///< ChannelText::meaning
+  const std::string& unit;                      ///< SI; "" = none
+  const std::string& doc;                       ///< ChannelText::meaning
+  const std::string& sign;                      ///< ChannelText::sign
+  const std::string& codes;                     ///< ChannelText::codes
   std::function<double(const Snapshot&)> value; ///< returns the value, in `unit`
   /// Cheap bounds of an expensive value, for the search of extremes; may be empty.
   std::function<ValueBounds(const Snapshot&)> bounds = {};
   bool has_extremes = true;             ///< false if the value can be infinite
-  std::string sign = {}, codes = {};    ///< as in ChannelText
   bool is_on_request = false;           ///< computed only if a model requests it
   ChannelRole role = ChannelRole::none; ///< meaning for any kind of element
 };
@@ -186,6 +198,7 @@ public:
   int force_link_count = 0;                                    ///< number of `links` used by force elements
   std::vector<Unit> units;                                     ///< force elements with modes
   std::vector<FrictionUnit> frictions;                         ///< in the order of compilation
+  SharedTexts texts;                                           ///< of the channels
   std::vector<Channel> channels;                               ///< all available channels
   std::vector<Integrand> integrands;                           ///< powers to be integrated for channels on request
   std::vector<std::unique_ptr<Channel>> operands;              ///< operands of formulas that are not channels themselves
@@ -207,6 +220,9 @@ public:
   int event_count = 0;                                         ///< number of event functions
   int friction_row_count = 0;                                  ///< number of rows of all friction elements
 
+  /// Returns a channel that can be added to `channels`; its texts are stored in `texts`.
+  [[nodiscard]] Channel make_channel(std::string name, std::string_view unit, const ChannelText& text,
+                                     std::function<double(const Snapshot&)> value);
   /// Returns the number of bodies, including the ground.
   [[nodiscard]] int body_count() const { return static_cast<int>(bodies.size()); }
   /// Returns the length of State::inner.
@@ -372,7 +388,8 @@ private:
   std::vector<std::string> operand_names_; ///< operands of formulas, sorted
   std::vector<GroupType> group_types_;     ///< one for each group of the system
   System* acting_ = nullptr;               ///< the real system while system_ is the temporary one of an inactive element; null otherwise
-  Channel unwanted_;
+  std::string no_text_;
+  Channel unwanted_{{}, no_text_, no_text_, no_text_, no_text_, {}};
 };
 
 /// Returns for each element of a completed model whether it is active. An element that depends on another, such as a sheet interface on its

@@ -183,11 +183,11 @@ void add_shared_channels(System& system) {
     for (const std::size_t f : group) {
       const std::string& name = system.element_names[system.frictions[f].element];
       names += (names.empty() ? "shared: " : " + ") + name;
-      system.channels.push_back(
-          {k_prefix + name + k_shares, "", "1: its force is a share", [group](const Snapshot& s) { return shares_of(s, group); }});
+      system.channels.push_back(system.make_channel(k_prefix + name + k_shares, "", "1: its force is a share",
+                                                    [group](const Snapshot& s) { return shares_of(s, group); }));
     }
-    system.channels.push_back(
-        {names, "N", "total of frictions along one line", [self, group](const Snapshot& s) { return borne_together(s, *self, group); }});
+    system.channels.push_back(system.make_channel(names, "N", "total of frictions along one line",
+                                                  [self, group](const Snapshot& s) { return borne_together(s, *self, group); }));
   }
 }
 
@@ -242,7 +242,7 @@ void add_unknown_channels(System& system, double met) {
   const auto scratch = std::make_shared<std::vector<PairJacobian>>();
   const System* const self = &system;
   const auto add = [&system](const char* what, const char* doc, std::function<double(const Snapshot&)> value) {
-    system.channels.push_back({k_prefix + what + k_unknown, "", doc, std::move(value)});
+    system.channels.push_back(system.make_channel(k_prefix + what + k_unknown, "", doc, std::move(value)));
     system.channels.back().has_extremes = false;
   };
   add(k_forces, "what forces change by where places and velocities do by what they are known to, N",
@@ -258,16 +258,16 @@ void add_audit_channels(System& system, const Model& model) {
     actions->additions.push_back([](System& made) { add_audit_channels(made, *action_group(made)->model); });
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const std::string name = k_prefix + system.element_names[system.frictions[f].element];
-    system.channels.push_back(
-        {name + k_pushes, "W", "power that friction gives", [self, f, met](const Snapshot& s) { return pushing_power(s, *self, f, met); }});
-    system.channels.push_back({name + k_overload, "", "share of its bound that friction takes, less 1",
-                               [self, f](const Snapshot& s) { return overload_of(s, *self, f); }});
+    system.channels.push_back(system.make_channel(name + k_pushes, "W", "power that friction gives",
+                                                  [self, f, met](const Snapshot& s) { return pushing_power(s, *self, f, met); }));
+    system.channels.push_back(system.make_channel(name + k_overload, "", "share of its bound that friction takes, less 1",
+                                                  [self, f](const Snapshot& s) { return overload_of(s, *self, f); }));
   }
   add_shared_channels(system);
   add_unknown_channels(system, met);
   if (may_pull(model)) return;
-  system.channels.push_back({k_prefix + "contacts.pull", "", "largest tension in a contact, N",
-                             [self](const Snapshot& s) { return largest_pull(s, self->contact_count); }});
+  system.channels.push_back(system.make_channel(k_prefix + "contacts.pull", "", "largest tension in a contact, N",
+                                                [self](const Snapshot& s) { return largest_pull(s, self->contact_count); }));
 }
 
 std::string pushes_channel(const std::string& element) { return k_prefix + element + k_pushes; }

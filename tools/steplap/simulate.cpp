@@ -42,7 +42,8 @@ struct SimulateOptions {
   std::vector<std::string> overrides;
   std::string output = "out";
   std::optional<std::string> end, step, integrator, tolerance, output_step, digits, time_limit, memory_limit;
-  bool is_overwriting = false, is_error_estimated = false, is_estimate_left_out = false, is_reported = false, is_hold_required = false;
+  bool is_overwriting = false, is_error_estimated = false, is_estimate_left_out = false, is_reported = false, is_hold_required = false,
+       has_all_extremes = false;
 
   /// Returns the values of --set and of its short forms.
   [[nodiscard]] std::vector<std::string> all_overrides() const {
@@ -52,6 +53,7 @@ struct SimulateOptions {
     if (integrator) all.push_back("simulation.integrator=" + *integrator);
     if (tolerance) all.push_back("simulation.tolerance=" + *tolerance);
     if (output_step) all.push_back("output.step=" + *output_step);
+    if (has_all_extremes) all.emplace_back("output.channels=[\"*\"]");
     return all;
   }
 
@@ -278,6 +280,8 @@ as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends
       {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
       {"--end", &o->end, "T", "end of the run, s; short for --set simulation.end=T"},
       {"--output-step", &o->output_step, "H", "time between two rows of the trajectory, s; short for --set output.step=H"},
+      {"--all", &o->has_all_extremes, "",
+       "extremes of all channels, in scenes of more than 100 000 channels too; short for --set 'output.channels=[\"*\"]'"},
       {"--step", &o->step, "H", "step of a fixed-step integrator, s"},
       {"--integrator", &o->integrator, "NAME", "integration method; see steplap elements simulation"},
       {"--tolerance", &o->tolerance, "TOL",

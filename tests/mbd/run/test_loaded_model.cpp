@@ -258,3 +258,35 @@ TEST_CASE("a run keeps running extremes only if a criterion can read them") {
     CHECK(run_model(loaded, options).result.growth.empty() == !is_limited);
   }
 }
+
+// 11 200 free bodies have 100 800 channels.
+TEST_CASE("a large scene has the extremes that are asked for, and those of everything that is judged") {
+  std::string bodies = "[simulation]\nend = 0.1\nintegrator = 'rk4'\nstep = 0.05\n[output]\nstep = 0.1\n";
+  for (int i = 0; i < 11200; ++i)
+    bodies += "[[body]]\nname = 'b" + std::to_string(i) + "'\nmass = 1.0\ninertia = 1.0\nposition = [" + std::to_string(i) + ", 0]\n";
+  const std::string plot = "[[plot]]\nname = 'fall'\nchannels = ['b7.vy']\n";
+  const std::string criterion = "[[acceptance]]\nname = 'near'\nchannel = 'b3.y'\nwithin = 2.0\nconsequence = 'reject'\n";
+  RunOptions options;
+  options.estimating = Estimating::never;
+  // Returns the number of channels with extremes in the summary, and whether a note says that some are left out.
+  const auto counted = [&](const std::string& text, const std::vector<std::string>& settings) {
+    const auto loaded = load_model_text(text, "bodies.toml", settings);
+    const std::vector<Finding> findings = findings_of(*loaded);
+    const bool is_noted = std::any_of(findings.begin(), findings.end(), [](const Finding& f) { return f.code == "extremes_left_out"; });
+    const Report report = judged_run(loaded, options);
+    const std::string json = report.json(), key = "\"t_max\"";
+    std::size_t count = 0;
+    for (std::size_t at = json.find(key); at != std::string::npos; at = json.find(key, at + 1)) ++count;
+    return std::pair(count, is_noted);
+  };
+  CHECK(counted(bodies + plot, {}) == std::pair(std::size_t{1}, true));
+  CHECK(counted(bodies, {"output.channels=[\"b1?.y\"]"}) == std::pair(std::size_t{10}, true));
+  CHECK(counted(bodies, {"output.channels=[\"*\"]"}) == std::pair(std::size_t{100800}, false));
+  CHECK(counted(bodies + criterion, {}) == std::pair(std::size_t{100800}, false));
+  const auto loaded = load_model_text(bodies + plot, "bodies.toml");
+  const Run run = run_model(loaded, options);
+  const auto range = std::find_if(run.result.ranges.begin(), run.result.ranges.end(),
+                                  [](const ChannelRange& each) { return each.channel->name == "b7.vy"; });
+  REQUIRE(range != run.result.ranges.end());
+  CHECK(range->low.value == doctest::Approx(-9.81 * 0.1).epsilon(1e-12)); // free fall, which rk4 integrates exactly
+}
