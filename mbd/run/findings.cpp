@@ -273,11 +273,11 @@ void note_restless_start(const LoadedModel& loaded, Findings& findings) {
                       body ? body->where : Location{}});
 }
 
-void note_restricted_extremes(const LoadedModel& loaded, Findings& findings) {
+void warn_of_restricted_extremes(const LoadedModel& loaded, Findings& findings) {
   const std::vector<Channel>& channels = loaded.system->channels;
   const auto left_out = std::count_if(channels.begin(), channels.end(), [&](const Channel& c) { return is_not_asked(c, channels.size()); });
   if (left_out == 0) return;
-  findings.push_back({"extremes_left_out", FindingLevel::note,
+  findings.push_back({"extremes_left_out", FindingLevel::warning,
                       "Of " + std::to_string(channels.size()) + " channels, extremes of " + std::to_string(left_out) +
                           " are left out, since no [[plot]] and no list of [output] names them: channels = [\"*\"] asks for all",
                       loaded.model.output.where});
@@ -470,7 +470,7 @@ std::vector<Finding> findings_of(const LoadedModel& loaded) {
     warn(findings, "no_channel", "no channel matches 'channels' of [output]: the trajectory will hold the time only", model.output.where);
   for (const std::string& name : loaded.plots_left_out)
     warn(findings, "plot_left_out", "plot '" + name + "' is left out: not all of its channels are in 'channels' of [output]");
-  note_restricted_extremes(loaded, findings);
+  warn_of_restricted_extremes(loaded, findings);
   note_restless_start(loaded, findings);
   return findings;
 }

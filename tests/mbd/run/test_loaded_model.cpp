@@ -269,14 +269,14 @@ TEST_CASE("a large scene has the extremes that are asked for, and those of every
   const std::string criterion = "[[acceptance]]\nname = 'near'\nchannel = 'b3.y'\nwithin = 2.0\nconsequence = 'reject'\n";
   RunOptions options;
   options.estimating = Estimating::never;
-  // Returns the number of channels with extremes, and whether a note says that some are left out.
+  // Returns the number of channels with extremes, and whether a warning says that some are left out.
   const auto counted = [&](const std::string& text, const std::vector<std::string>& settings) {
     const auto loaded = load_model_text(text, "bodies.toml", settings);
     const std::vector<Finding> findings = findings_of(*loaded);
-    const bool is_noted = std::any_of(findings.begin(), findings.end(), [](const Finding& f) { return f.code == "extremes_left_out"; });
+    const bool is_said = std::any_of(findings.begin(), findings.end(), [](const Finding& f) { return f.code == "extremes_left_out"; });
     const std::vector<ChannelRange> ranges = run_model(loaded, options).result.ranges;
     return std::pair(std::count_if(ranges.begin(), ranges.end(), [](const ChannelRange& r) { return std::isfinite(r.high.value); }),
-                     is_noted);
+                     is_said);
   };
   CHECK(counted(bodies + plot, {}) == std::pair(std::ptrdiff_t{1}, true));
   CHECK(counted(bodies, {"output.channels=[\"b1?.y\"]"}) == std::pair(std::ptrdiff_t{10}, true));
