@@ -117,7 +117,12 @@ std::optional<ReferenceRuns> reference_runs(const System& system, const State& i
       const bool is_known = !best->parted_at && is_fine_enough(best->own, best->of_run);
       if (is_known || next.settings.tolerance < k_most_tolerance_of_last) break;
     }
-  } catch (const NumericalFailure&) {}
+  } catch (const EvaluationBudgetExceeded&) {
+    // what has been found decides
+  } catch (const NumericalFailure&) {
+    // Where adaptive steps end, as at a pole of a force, fixed steps may pass over what ended them; their own halves agree with them.
+    if (!best) throw;
+  }
   if (!best) return {};
   best->coarse_options = std::move(coarse.options);
   best->options = std::move(fine.options);

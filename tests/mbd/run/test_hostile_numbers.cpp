@@ -238,6 +238,17 @@ TEST_CASE("a run ends with the name of the element whose formula loses its value
   CHECK(has(failure_with(logarithm, {"simulation.integrator=rk4", "simulation.step=1e-3"}), "the formula of 'magnet' has no finite value"));
 }
 
+// Steps of rk4 and their halves pass over the pole alike, and agree with each other.
+TEST_CASE("the error of fixed steps that pass over a pole, at which adaptive steps end, is unknown") {
+  const std::string text = "[simulation]\nend = 2.0\nintegrator = \"rk4\"\nstep = 1e-3\n[[body]]\nname = \"box\"\nmass = 1.0\n"
+                           "inertia = 1.0\nposition = [1.0, 0.0]\nvelocity = [-1.0, 0.0]\n[[element]]\nkind = \"force\"\n"
+                           "name = \"magnet\"\na = \"box\"\ncoordinate = \"x\"\nformula = \"-'1e-3 N m'/value\"\n";
+  const Report report = judged_run(load_model_text(text, "pole.toml"));
+  REQUIRE_FALSE(report.run.failure);
+  CHECK(report.estimate.status == EstimateStatus::failed);
+  CHECK(has(report.estimate.reason, "the finer run failed"));
+}
+
 // Squares of such places are infinite, and so were the nudges by which the balance of a run is tried.
 TEST_CASE("a run with bodies beyond all distances has a report, in which its balance is unknown") {
   RunOptions options;
