@@ -8,21 +8,35 @@
 
 namespace steplap {
 
-void restrict_extremes(const Model& model, System& system) {
-  if (system.channels.size() <= k_large_scene || is_judged(model) || action_group(system)) return;
-  std::vector<std::string> asked = model.output.channels;
-  asked.insert(asked.end(), model.output.also.begin(), model.output.also.end());
-  for (const Plot& plot : model.plots)
-    for (const auto* patterns : {&plot.channels, &plot.bounds}) asked.insert(asked.end(), patterns->begin(), patterns->end());
-  for (const DefinedChannel& formula : model.channels) asked.push_back(formula.name);
-  for (Channel& channel : system.channels) {
-    const bool is_asked = channel.role != ChannelRole::none || std::any_of(asked.begin(), asked.end(), [&](const std::string& pattern) {
-                            return matches_pattern(channel.name, pattern);
-                          });
-    channel.has_extremes = channel.has_extremes && is_asked;
+namespace {
+
+constexpr std::size_t k_large_scene = 100'000; // channels; the search for their extremes then takes seconds
+
+} // namespace
+
+AskedChannels::AskedChannels(const Model& model, const System& system)
+    : is_everything_(system.channels.size() <= k_large_scene || is_judged(model) || action_group(system)) {
+  if (is_everything_) return;
+  const auto add = [this](const std::vector<std::string>& patterns) {
+    patterns_.insert(patterns_.end(), patterns.begin(), patterns.end());
+  };
+  add(model.output.channels);
+  add(model.output.also);
+  for (const Plot& plot : model.plots) {
+    add(plot.channels);
+    add(plot.bounds);
   }
+  for (const DefinedChannel& formula : model.channels) patterns_.push_back(formula.name);
 }
 
-bool is_not_asked(const Channel& channel, std::size_t count) { return count > k_large_scene && !channel.has_extremes; }
+bool AskedChannels::contains(const Channel& channel) const {
+  const auto matches = [&channel](const std::string& pattern) { return matches_pattern(channel.name, pattern); };
+  return is_everything_ || channel.role != ChannelRole::none || std::any_of(patterns_.begin(), patterns_.end(), matches);
+}
+
+void restrict_extremes(const Model& model, System& system) {
+  const AskedChannels asked(model, system);
+  for (Channel& channel : system.channels) channel.has_extremes = channel.has_extremes && asked.contains(channel);
+}
 
 } // namespace steplap

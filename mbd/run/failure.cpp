@@ -14,7 +14,8 @@ namespace steplap {
 
 namespace {
 
-// Times after the last step at which formulas are tried: first and last in rounding errors of time, and the ratio between them.
+// Times after the last step at which formulas are tried, in rounding errors of time: from the shortest step that integrators make to well
+// beyond the last ones, each k_growth times the one before.
 constexpr double k_nearest = 16.0, k_farthest = 1e7, k_growth = 4.0;
 
 // Returns the location of an element or body in the model file.

@@ -274,13 +274,14 @@ void note_restless_start(const LoadedModel& loaded, Findings& findings) {
 }
 
 void warn_of_restricted_extremes(const LoadedModel& loaded, Findings& findings) {
+  const AskedChannels asked(loaded.model, *loaded.system);
   const std::vector<Channel>& channels = loaded.system->channels;
-  const auto left_out = std::count_if(channels.begin(), channels.end(), [&](const Channel& c) { return is_not_asked(c, channels.size()); });
+  const auto left_out = std::count_if(channels.begin(), channels.end(), [&asked](const Channel& c) { return asked.leave_out(c); });
   if (left_out == 0) return;
-  findings.push_back({"extremes_left_out", FindingLevel::warning,
-                      "Of " + std::to_string(channels.size()) + " channels, extremes of " + std::to_string(left_out) +
-                          " are left out, since no [[plot]] and no list of [output] names them: channels = [\"*\"] asks for all",
-                      loaded.model.output.where});
+  warn(findings, "extremes_left_out",
+       "of " + std::to_string(channels.size()) + " channels, extremes of " + std::to_string(left_out) +
+           " are left out, since no [[plot]] and no list of [output] names them: channels = [\"*\"] asks for all",
+       loaded.model.output.where);
 }
 
 // Returns true if a table created the body. The free ends of such bodies (beams) are intended.

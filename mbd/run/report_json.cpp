@@ -183,8 +183,9 @@ Json extremes_of(const ChannelRange& range, const Report& report, MeaningIndex& 
 
 Json extremes_json(const Report& report, MeaningIndex& meanings) {
   Json json = object_with_room(report.ranges().size());
+  const AskedChannels asked(report.run.loaded->model, *report.run.loaded->system);
   for (const ChannelRange& range : report.ranges())
-    if (!is_not_asked(*range.channel, report.ranges().size())) append(json, range.channel->name) = extremes_of(range, report, meanings);
+    if (!asked.leave_out(*range.channel)) append(json, range.channel->name) = extremes_of(range, report, meanings);
   return json;
 }
 
@@ -460,9 +461,10 @@ void write_summary(const Report& report, const FileRecords& files, const FileSin
     text.clear();
   };
   MeaningIndex meanings;
+  const AskedChannels asked(report.run.loaded->model, *report.run.loaded->system);
   bool is_first = true;
   for (const ChannelRange& range : report.ranges()) {
-    if (is_not_asked(*range.channel, report.ranges().size())) continue;
+    if (asked.leave_out(*range.channel)) continue;
     Json entry = Json::object();
     append(entry, range.channel->name) = extremes_of(range, report, meanings);
     text += (is_first ? "" : ",") + entries_text(entry, "  ");

@@ -134,6 +134,8 @@ TEST_CASE("options are laid over the model") {
   CHECK(has(summary, "\"output.step=25 ms\""));
   CHECK(has(summary, "\"integrator\": \"dop853\""));
   CHECK(has(text_of(bench.at("out/a/model.toml")), "mass = \"3 kg\""));
+  CHECK(steplap_does({"simulate", "-q", model, "-o", bench.at("all"), "--all"}).code == 0);
+  CHECK(has(text_of(bench.at("all/a/model.toml")), "channels = [\"*\"]"));
 
   const auto error = [&](std::vector<std::string> options) {
     std::vector<std::string> arguments{"simulate", model, "-o", bench.at("none")};
