@@ -106,6 +106,13 @@ std::string column_name(std::string_view field) {
   return std::string(field);
 }
 
+// Returns the unit in brackets: "time [s]" → "s"; "" if there is none.
+std::string column_unit(std::string_view field) {
+  const auto open = field.find('['), close = field.rfind(']');
+  if (open == std::string_view::npos || open == 0 || close == std::string_view::npos || close < open) return {};
+  return std::string(trimmed(field.substr(open + 1, close - open - 1)));
+}
+
 class CsvReader {
 public:
   explicit CsvReader(const std::string& file) { table_.file = file; }
@@ -155,7 +162,10 @@ private:
            std::to_string(name - &fields_.front() + 1) + ", '" + std::string(*number) + "' in column " +
            std::to_string(number - &fields_.front() + 1) +
            ". If it is data, correct the word; if it names the columns, take names that are not numbers");
-    for (const std::string_view field : fields_) table_.names.push_back(column_name(field));
+    for (const std::string_view field : fields_) {
+      table_.names.push_back(column_name(field));
+      table_.units.push_back(column_unit(field));
+    }
     return true;
   }
 

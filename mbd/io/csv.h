@@ -18,6 +18,7 @@ namespace steplap {
 struct CsvTable {
   std::string file;
   std::vector<std::string> names;           ///< of the columns, empty without a header row
+  std::vector<std::string> units;           ///< in brackets after the names, "" where there is none; empty without a header row
   std::vector<std::vector<double>> columns; ///< equal lengths
   std::vector<int> lines;                   ///< line number in the file, for each row
 

@@ -142,6 +142,7 @@ private:
     std::unordered_map<std::string, std::size_t> inherited;
     for (std::size_t i = 0; i < base.children.size(); ++i) inherited.emplace(entry_name(base.children[i]), i);
     std::unordered_set<std::string> removed, seen;
+    base.children.reserve(base.children.size() + over.children.size());
     for (Node& entry : over.children) {
       const std::string name = entry_name(entry);
       if (over.key != "part" && is_in_part(name)) { // merged when the part's entries are known (parts.h)
@@ -155,6 +156,10 @@ private:
         else removed.insert(name);
       } else if (is_new) {
         if (take_flag(entry, "replace")) report_missing(entry, over.key, "replaced", inherited);
+        if (!entry.find("unset")) {
+          base.children.push_back(std::move(entry));
+          continue;
+        }
         Node& added = base.children.emplace_back(without_children(entry));
         merge_table(added, entry, over.key + " '" + name + "'");
       } else {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 namespace steplap {
@@ -121,8 +122,24 @@ private:
     if (!channels.empty()) return channels;
     std::vector<std::string> known;
     for (const Channel* channel : all_.channels()) known.push_back(channel->name);
-    problems_.push_back({where, subject + ": no channel matches '" + pattern + "'" + did_you_mean(pattern, known)});
+    if (const std::string on_request = name_on_request(pattern); !on_request.empty())
+      problems_.push_back({where, subject + ": '" + on_request + "' is computed on request only: add also = [\"" + on_request +
+                                      "\"] to [output]"});
+    else problems_.push_back({where, subject + ": no channel matches '" + pattern + "'" + did_you_mean(pattern, known)});
     return channels;
+  }
+
+  // Returns the first channel on request that matches the pattern; "" if there is none.
+  [[nodiscard]] std::string name_on_request(const std::string& pattern) const {
+    Model everything = model_;
+    everything.output.also = {"*"};
+    try {
+      const std::unique_ptr<System> system = compile(everything);
+      for (const Channel& channel : system->channels)
+        if (channel.is_on_request && matches_pattern(channel.name, pattern)) return channel.name;
+    } catch (const ModelError&) { // names that only "*" makes ambiguous
+    }
+    return {};
   }
 
   static const Location& place_of(const Plot& plot, const std::vector<std::string>* list) {

@@ -12,7 +12,7 @@ struct Record : SignalDefinition {
   std::string file;
   std::string time_column = "1";
   std::string column = "2";
-  std::string time_unit = "s";
+  std::string time_unit;
   std::string unit;
   double scale = 1.0;
   double offset = 0.0; // s
@@ -20,9 +20,22 @@ struct Record : SignalDefinition {
   std::string sha256;
 };
 
-double unit_factor(const Record& record, const std::string& key, const std::string& unit, const std::string& wanted) {
+// Returns the factor from the unit that `key` or else the header of the column gives to `wanted`; 1 if neither does.
+double unit_factor(const Record& record, const std::string& key, const std::string& given, const std::string& in_header,
+                   const std::string& wanted) {
+  const bool is_of_gravity = wanted != "s" && (in_header == "g" || in_header == "G"); // no record is in grams
+  const std::string header = is_of_gravity ? "gravity" : in_header, &unit = given.empty() ? header : given;
   if (unit.empty()) return 1.0;
+  if (!given.empty() && !header.empty()) {
+    const Quantity own = parse_quantity("1 " + given, wanted), of_header = parse_quantity("1 " + header, wanted);
+    if (own.problem.empty() && of_header.problem.empty() && own.value != of_header.value)
+      throw ModelError(record.where, "'" + key + "' of record '" + record.name + "' is '" + given + "', but the column says [" + in_header +
+                                         "]: drop '" + key + "', or correct the file");
+  }
   const Quantity zero = parse_quantity("0 " + unit, wanted), one = parse_quantity("1 " + unit, wanted);
+  if (!one.problem.empty() && given.empty())
+    throw ModelError(record.where,
+                     "the column's unit [" + in_header + "] of record '" + record.name + "' is not known: give it by '" + key + "'");
   if (!one.problem.empty()) throw ModelError(record.where, "'" + key + "' of record '" + record.name + "': " + one.problem);
   if (zero.value != 0.0)
     throw ModelError(record.where,
@@ -40,19 +53,23 @@ void check_ascending(const CsvTable& table, const std::vector<double>& times) {
 Signal build_record(const SignalDefinition& definition) {
   const Record& record = static_cast<const Record&>(definition);
   const CsvTable table = read_csv(record.file, record.where, record.sha256);
-  const auto& times = table.columns[table.column(record.time_column, record.where)];
-  const auto& values = table.columns[table.column(record.column, record.where)];
+  const std::size_t time_column = table.column(record.time_column, record.where), column = table.column(record.column, record.where);
+  const auto &times = table.columns[time_column], &values = table.columns[column];
   check_ascending(table, times);
-  const double time_scale = unit_factor(record, "time_unit", record.time_unit, "s");
-  const double scale = record.scale * unit_factor(record, "unit", record.unit, "*");
+  const auto in_header = [&table](std::size_t k) { return table.units.empty() ? std::string() : table.units[k]; };
+  const double time_scale = unit_factor(record, "time_unit", record.time_unit, in_header(time_column), "s");
+  const double scale = record.scale * unit_factor(record, "unit", record.unit, in_header(column), "*");
   std::vector<Signal::Piece> pieces(times.size());
   for (std::size_t i = 0; i < times.size(); ++i) {
     pieces[i].start = times[i] * time_scale + record.offset;
     pieces[i].c[0] = values[i] * scale;
     if (i > 0) pieces[i - 1].c[1] = (pieces[i].c[0] - pieces[i - 1].c[0]) / (pieces[i].start - pieces[i - 1].start);
   }
-  if (record.after == "zero") pieces.back().c[0] = 0.0;
-  return Signal(std::move(pieces));
+  if (record.after != "zero") return Signal(std::move(pieces));
+  pieces.back().c[0] = 0.0;
+  Signal signal(std::move(pieces));
+  signal.doubt_cut_end();
+  return signal;
 }
 
 } // namespace
@@ -69,8 +86,9 @@ const SignalKind& record_signal_kind() {
     k.fields.add("file", &Record::file).as(FieldType::file).required().doc("CSV file, relative to the model file");
     k.fields.add("time_column", &Record::time_column).doc("name of the column of times, or its number from \"1\"");
     k.fields.add("column", &Record::column).doc("name of the column of values, or its number from \"1\"");
-    k.fields.add("time_unit", &Record::time_unit).doc("unit of the times");
-    k.fields.add("unit", &Record::unit).doc("unit of the values, such as \"gravity\" or \"km/h\"; SI if not given");
+    k.fields.add("time_unit", &Record::time_unit).doc("unit of the times; if not given that in brackets in the header, or s");
+    k.fields.add("unit", &Record::unit)
+        .doc("unit of the values, such as \"gravity\" or \"km/h\"; if not given that in brackets in the header, or SI");
     k.fields.add("scale", &Record::scale).doc("factor on the values; -1 turns the sign");
     k.fields.add("offset", &Record::offset).in("s").doc("added to the times");
     k.fields.add("after", &Record::after).one_of({"zero", "hold"}).doc("value after the last row: 0, or the last one kept");

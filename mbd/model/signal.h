@@ -96,11 +96,23 @@ public:
   /// Returns the first jump with from < t < end.
   [[nodiscard]] std::optional<Jump> first_jump(DriveLevel level, double from, double end) const;
 
+  /// A reason why measured data behind the signal may not be what acted.
+  struct Doubt {
+    double t = 0.0;   ///< s; runs that end before this time are not affected
+    std::string text; ///< sentence without a full stop
+  };
+  /// Returns all doubts.
+  [[nodiscard]] const std::vector<Doubt>& doubts() const { return doubts_; }
+  void add_doubt(double t, std::string text) { doubts_.push_back({t, std::move(text)}); }
+  /// Adds a doubt if the last value before the final jump to zero is a large part of the largest one: the record ends within an event.
+  void doubt_cut_end();
+
 private:
   [[nodiscard]] const Piece* piece_at(double t) const;
   void accumulate_integrals();
   std::vector<Piece> pieces_;
   std::vector<double> breakpoints_;
+  std::vector<Doubt> doubts_;
   double value_at_zero_ = 0.0;
 };
 

@@ -328,6 +328,23 @@ std::vector<Finding> findings_of_uses(const LoadedModel& loaded, const std::vect
   return findings;
 }
 
+// Returns the doubts of the signals that acted, each once.
+std::vector<Finding> doubts_of_records(const LoadedModel& loaded, const std::vector<ActingSignal>& uses) {
+  Parts parts(loaded.model);
+  std::vector<Finding> findings;
+  std::unordered_set<std::string> known;
+  for (const ActingSignal& use : uses) {
+    if (use.signal.empty() || use.spans.empty()) continue;
+    for (const LoadPart& part : parts.of(use.signal))
+      for (const Signal::Doubt& doubt : part.signal->doubts()) {
+        const SignalDefinition& definition = *part.entry->definition;
+        if (use.spans.back().to > doubt.t && known.insert(definition.name + doubt.text).second)
+          findings.push_back(warning("record_in_doubt", "signal '" + definition.name + "': " + doubt.text, definition.where));
+      }
+  }
+  return findings;
+}
+
 } // namespace
 
 std::vector<Finding> loads_beyond_end(const LoadedModel& loaded) {
@@ -342,6 +359,7 @@ std::vector<Finding> loads_not_acted(const LoadedModel& loaded, const RunResult&
   const std::vector<ActingSignal> uses = acting_signals(loaded.model, result);
   const Judge judge(loaded, result.final_state.t, &growth, &result, have_course(loaded.model, uses));
   std::vector<Finding> findings = findings_of_uses(loaded, uses, judge);
+  for (Finding& finding : doubts_of_records(loaded, uses)) findings.push_back(std::move(finding));
   for (Finding& finding : late_formulas(loaded, result)) findings.push_back(std::move(finding));
   return findings;
 }

@@ -1,11 +1,11 @@
 #include "mbd/run/edges.h"
 
 #include "mbd/run/quantity_text.h"
+#include "mbd/run/range_index.h"
 #include "mbd/system/contact_description.h"
 
 #include <map>
 #include <optional>
-#include <unordered_map>
 
 namespace steplap {
 
@@ -27,19 +27,18 @@ std::optional<Finding> beyond_edge(const LoadedModel& loaded, const EndlessFace&
 } // namespace
 
 std::vector<Finding> contacts_too_deep(const LoadedModel& loaded, const std::vector<ChannelRange>& ranges) {
-  std::unordered_map<std::string, const ChannelRange*> range_of;
-  for (const ChannelRange& range : ranges) range_of.emplace(range.channel->name, &range);
+  const RangeIndex range_of(ranges);
   std::vector<Finding> found;
   for (const ElementEntry& entry : loaded.model.elements) {
     const Element& element = *entry.element;
     const auto contact = contact_of(entry, loaded.model);
-    const auto range = range_of.find(element.name + ".gap");
-    if (!contact || !contact->depth_limit || range == range_of.end()) continue;
+    if (!contact || !contact->depth_limit) continue;
     const double most = *contact->depth_limit;
-    if (!(-range->second->low.value > most)) continue;
+    const ChannelRange* const gap = range_of.find(element.name + ".gap");
+    if (!gap || !(-gap->low.value > most)) continue;
     found.push_back({"contact_too_deep", FindingLevel::warning,
-                     "'" + element.name + "' was pressed " + quantity_text(-range->second->low.value, "m", 1e-3) +
-                         " deep at t = " + time_text(range->second->low.t) + " s; beyond " + quantity_text(most, "m", 1e-3) +
+                     "'" + element.name + "' was pressed " + quantity_text(-gap->low.value, "m", 1e-3) +
+                         " deep at t = " + time_text(gap->low.t) + " s; beyond " + quantity_text(most, "m", 1e-3) +
                          " one part is through the other, and what came after is not to be trusted. A larger 'stiffness' keeps them apart",
                      element.where});
   }

@@ -325,6 +325,7 @@ std::vector<Finding> implausible_findings(const LoadedModel& loaded) {
   Findings findings;
   for (const auto check : loaded.views->value_checks) append(findings, check(loaded.model));
   append(findings, implausible_friction(loaded));
+  append(findings, implausible_gravity(loaded));
   append(findings, implausible_loads(loaded));
   append(findings, magnitude_warnings(loaded));
   return findings;

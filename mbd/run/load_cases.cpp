@@ -134,13 +134,28 @@ Verdict LoadCaseResults::verdict() const {
   return worst;
 }
 
+namespace {
+
+// Returns " Judged in no case: 'chains'." with all criteria of the models to which no case applies; "" if there are none.
+std::string unjudged_text(const LoadCaseResults& results) {
+  std::string names;
+  for (const auto& model : results.models)
+    for (const Criterion& criterion : model->model.criteria)
+      if (std::none_of(results.cases.begin(), results.cases.end(), [&](const CaseResult& one) { return applies(one.load, criterion); }))
+        names += (names.empty() ? "'" : ", '") + criterion.name + "'";
+  return names.empty() ? names : " Judged in no case: " + names + ".";
+}
+
+} // namespace
+
 std::string LoadCaseResults::reason() const {
   const auto decides = [this](const CaseResult& one) { return one.judgement.verdict == verdict(); };
-  if (verdict() == Verdict::hold) return counted(cases.size(), "case holds", "cases hold") + ".";
+  const std::string unjudged = unjudged_text(*this);
+  if (verdict() == Verdict::hold) return counted(cases.size(), "case holds", "cases hold") + "." + unjudged;
   const auto first = std::find_if(cases.begin(), cases.end(), decides);
   const auto count = static_cast<std::size_t>(std::count_if(cases.begin(), cases.end(), decides));
   return "'" + first->load.name + "': " + first->reason +
-         (count > 1 ? " " + counted(count - 1, "more case has", "more cases have") + " the same verdict." : "");
+         (count > 1 ? " " + counted(count - 1, "more case has", "more cases have") + " the same verdict." : "") + unjudged;
 }
 
 LoadCaseResults run_load_cases(const std::string& path, const std::vector<std::string>& overrides, const RunCatalogue& catalogue,

@@ -10,11 +10,13 @@
 #include "mbd/run/limited_channels.h"
 #include "mbd/run/quantity_text.h"
 #include "mbd/run/range_index.h"
+#include "mbd/system/places.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <unordered_map>
 #include <unordered_set>
@@ -54,6 +56,72 @@ std::string word_of(const std::string& codes, double value) {
   return "";
 }
 
+bool slips_at_end(const RangeIndex& ranges, const std::string& element) {
+  const ChannelRange* const mode = ranges.find(element + ".mode");
+  const std::string word = mode ? word_of(mode->channel->codes, mode->final) : "";
+  return word == "slips" || word == "slides";
+}
+
+// Elements that slip when the run ends, and the channels that move with them.
+class Slides {
+public:
+  Slides(const Model& model, const RunResult& result) : model_(model) {
+    const RangeIndex ranges(result.ranges);
+    for (const ElementEntry& entry : model.elements) {
+      if (!slips_at_end(ranges, entry.element->name)) continue;
+      owners_.insert(entry.element->name);
+      for (const std::string& body : bodies_of(entry)) owners_.insert(body);
+    }
+  }
+  /// Returns true if the channel, or one that its formula names, belongs to an element that slips or to one of its bodies.
+  [[nodiscard]] bool moves(const std::string& channel) const {
+    const auto owners = owners_of(channel);
+    return std::any_of(owners.begin(), owners.end(), [this](const std::string& owner) { return owners_.count(owner) > 0; });
+  }
+  /// Returns true if a criterion limits a place of the element's bodies.
+  [[nodiscard]] bool is_limited(const ElementEntry& entry) const {
+    const std::vector<std::string> bodies = bodies_of(entry);
+    return std::any_of(model_.criteria.begin(), model_.criteria.end(), [&](const Criterion& criterion) {
+      if (!criterion.event.empty() || !is_formula(criterion.channel)) return false;
+      const auto owners = owners_of(criterion.channel);
+      return std::any_of(bodies.begin(), bodies.end(), [&](const std::string& body) { return owners.count(body) > 0; });
+    });
+  }
+
+private:
+  [[nodiscard]] bool is_formula(const std::string& channel) const {
+    return std::any_of(model_.channels.begin(), model_.channels.end(), [&](const DefinedChannel& d) { return d.name == channel; });
+  }
+  // Returns the bodies and elements whose channels the channel is or uses.
+  [[nodiscard]] std::set<std::string> owners_of(const std::string& channel) const {
+    std::set<std::string> owners, seen{channel};
+    std::vector<std::string> names{channel};
+    while (!names.empty()) {
+      const std::string name = std::move(names.back());
+      names.pop_back();
+      owners.insert(name.substr(0, name.rfind('.')));
+      for (const DefinedChannel& defined : model_.channels)
+        if (defined.name == name)
+          for (const std::string& each : Formula(defined.expression, "", {}).names())
+            if (seen.insert(each).second) names.push_back(each);
+    }
+    return owners;
+  }
+  [[nodiscard]] std::vector<std::string> bodies_of(const ElementEntry& entry) const {
+    std::vector<std::string> bodies;
+    for (const Field& field : entry.kind->fields.fields())
+      if (field.type == FieldType::marker || field.type == FieldType::body) {
+        const auto name = std::get<std::string>(field.get(entry.element.get()));
+        const Body* const body = name.empty() ? nullptr : place_of(model_, name).body;
+        if (body && !body->fixed) bodies.push_back(body->name);
+      }
+    return bodies;
+  }
+
+  const Model& model_;
+  std::unordered_set<std::string> owners_;
+};
+
 // Returns the force channel if the element is a contact, which has a gap and a force; nullptr otherwise.
 const ChannelRange* force_of_contact(const RangeIndex& ranges, const std::string& element) {
   return ranges.find(element + ".gap") ? ranges.find(element + ".force") : nullptr;
@@ -68,12 +136,12 @@ Location where_of(const Model& model, const std::string& criterion) {
   return found == model.criteria.end() ? Location{} : found->where;
 }
 
-Finding still_grows(const Model& model, const std::string& criterion, const std::string& how, double seconds_left) {
+Finding still_grows(const Model& model, const std::string& criterion, const std::string& how) {
   return {"criterion_still_grows", FindingLevel::warning,
-          "'" + criterion + "' is met so far, but " + how + " after " + rounded_text(seconds_left, 3) +
-              " s more. Let the run go on until it comes to rest",
-          where_of(model, criterion)};
+          "'" + criterion + "' is met so far, but " + how + ". Let the run go on until it comes to rest", where_of(model, criterion)};
 }
+
+std::string after(double seconds) { return " after " + rounded_text(seconds, 3) + " s more"; }
 
 // Returns the time, s, in which the worst value of criterion i reaches its limit at the rate of the last eighth of a run of length `end`,
 // s. Returns nothing if the value did not grow in each eighth of the second half, or if its growth slows down.
@@ -96,15 +164,16 @@ std::optional<double> builds_up_in(const ReserveHistory& history, std::size_t i,
 
 namespace {
 
-// Returns the final second derivative of a coordinate of a body, such as "box.x", if it increases the magnitude of the rate; otherwise 0.
-double growing_acceleration(const RangeIndex& ranges, const ChannelRange& range) {
-  const std::string& name = range.channel->name;
-  for (const auto& [coordinate, acceleration] : {std::pair{".x", ".ax"}, {".y", ".ay"}, {".theta", ".alpha"}}) {
-    if (!name.ends_with(coordinate)) continue;
-    const ChannelRange* const found = ranges.find(name.substr(0, name.rfind('.')) + acceleration);
-    return found && found->final * range.final_rate > 0.0 ? found->final : 0.0;
-  }
-  return 0.0;
+// Returns the value that a channel reaches within `length` seconds after the end, at its present rate and growing second derivative. A
+// channel of a slide goes on for up to k_far of this time: as far as its deceleration lets it, or for all of that time if it has none.
+double value_after_end(const ChannelRange& range, double length, bool is_slide) {
+  constexpr double k_far = 50.0;
+  const double rate = range.final_rate, bend = range.final_bend;
+  const double growing = bend * rate > 0.0 ? bend : 0.0;
+  if (!is_slide) return range.final + (rate + 0.5 * growing * length) * length;
+  const double far = k_far * length, stops_in = bend * rate < 0.0 ? -rate / bend : far;
+  const double way = stops_in < far ? 0.5 * rate * stops_in : (rate + 0.5 * growing * far) * far;
+  return range.final + std::copysign(std::max(std::abs(way), std::abs(rate) * length), rate);
 }
 
 } // namespace
@@ -116,12 +185,12 @@ std::vector<Finding> growing_criteria(const LoadedModel& loaded, const RunResult
   std::unordered_set<std::string> known;
   const std::vector<LimitedChannel> all = limited_channels(loaded.model, result, judgement);
   const ReserveHistory history(result, all);
-  const RangeIndex ranges(result.ranges);
+  const Slides slides(loaded.model, result);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const LimitedChannel& limited = all[i];
     const ChannelRange& range = result.ranges[limited.channel];
     const double slack = k_still_worst * (range.high.value - range.low.value), rate = range.final_rate;
-    const double then = range.final + (rate + 0.5 * growing_acceleration(ranges, range) * length) * length;
+    const double then = value_after_end(range, length, slides.moves(range.channel->name));
     const bool rises = rate > 0.0 && range.final >= range.high.value - slack && then >= limited.largest;
     const bool falls = rate < 0.0 && range.final <= range.low.value + slack && then <= limited.least;
     const std::string &unit = range.channel->unit, &name = range.channel->name;
@@ -131,16 +200,15 @@ std::vector<Finding> growing_criteria(const LoadedModel& loaded, const RunResult
         findings.push_back(still_grows(loaded.model, limited.criterion,
                                        "when the run ends '" + name + "' is at " + quantity_text(range.final, unit) + " and still " +
                                            (rises ? "rises" : "falls") + ": at its present rate it reaches the limit of " +
-                                           quantity_text(limit, unit),
-                                       (limit - range.final) / rate));
+                                           quantity_text(limit, unit) + after((limit - range.final) / rate)));
     } else if (const auto builds_up = i < history.count() ? builds_up_in(history, i, length) : std::nullopt;
                builds_up && *builds_up <= length) {
       if (known.insert(limited.criterion).second)
         findings.push_back(still_grows(loaded.model, limited.criterion,
                                        "the largest value of '" + name +
                                            "' grows to the end of the run: at its present rate it reaches "
-                                           "the limit",
-                                       *builds_up));
+                                           "the limit" +
+                                           after(*builds_up)));
     }
   }
   return findings;
@@ -150,15 +218,14 @@ std::vector<Finding> open_at_end(const LoadedModel& loaded, const RunResult& res
   const Model& model = loaded.model;
   if (model.criteria.empty()) return {}; // without criteria nothing is judged
   const RangeIndex ranges(result.ranges);
+  const Slides slides(model, result);
   std::vector<std::string> slip, are_open;
   for (const ElementEntry& entry : model.elements) {
     const std::string& name = entry.element->name;
-    const ChannelRange* const mode = ranges.find(name + ".mode");
-    const std::string word = mode ? word_of(mode->channel->codes, mode->final) : "";
-    const bool slips = word == "slips" || word == "slides";
+    const bool slips = slips_at_end(ranges, name);
     const ChannelRange* const force = force_of_contact(ranges, name);
     const bool has_opened = force && force->first > 0.0 && !(force->final > 0.0);
-    if ((!slips && !has_opened) || entry.kind->judge || is_asked(model, result, name)) continue;
+    if ((!slips && !has_opened) || entry.kind->judge || is_asked(model, result, name) || (slips && slides.is_limited(entry))) continue;
     (slips ? slip : are_open).push_back(name);
   }
   if (slip.empty() && are_open.empty()) return {};

@@ -207,6 +207,15 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
   return findings;
 }
 
+std::vector<Finding> implausible_gravity(const LoadedModel& loaded) {
+  constexpr double k_least = 1.0, k_most = 60.0; // m/s²: the Moon has 1.6, Jupiter 25; a constant pull of 5 g may be added
+  const double size = loaded.model.header.gravity.norm();
+  if (size == 0.0 || (size >= k_least && size <= k_most)) return {};
+  return {warning("implausible_gravity",
+                  "gravity is " + rounded_text(size, 3) + " m/s², " + rounded_text(size / 9.80665, 3) + " times that of the Earth",
+                  loaded.model.header.where)};
+}
+
 std::vector<Finding> magnitude_warnings(const LoadedModel& loaded) {
   const Model& model = loaded.model;
   std::vector<Finding> findings;

@@ -10,23 +10,26 @@
 
 namespace steplap {
 
-/// Hash table of channel ranges by name. Refers to the ranges and their channels, which must outlive it.
+/// Hash table of channel ranges by name, made at the first question: many scenes ask none. Refers to the ranges and their channels, which
+/// must outlive it. Not for use by several threads.
 class RangeIndex {
 public:
   /// `ranges`: those of all channels of a run (RunResult::ranges).
-  explicit RangeIndex(const std::vector<ChannelRange>& ranges) {
-    by_name_.reserve(ranges.size());
-    for (const ChannelRange& range : ranges) by_name_.emplace(range.channel->name, &range);
-  }
+  explicit RangeIndex(const std::vector<ChannelRange>& ranges) : ranges_(ranges) {}
 
   /// Returns the range of a channel; nullptr if the channel does not exist or has no range.
   [[nodiscard]] const ChannelRange* find(const std::string& channel) const {
+    if (by_name_.empty()) {
+      by_name_.reserve(ranges_.size());
+      for (const ChannelRange& range : ranges_) by_name_.emplace(range.channel->name, &range);
+    }
     const auto found = by_name_.find(channel);
     return found == by_name_.end() ? nullptr : found->second;
   }
 
 private:
-  std::unordered_map<std::string_view, const ChannelRange*> by_name_;
+  const std::vector<ChannelRange>& ranges_;
+  mutable std::unordered_map<std::string_view, const ChannelRange*> by_name_;
 };
 
 } // namespace steplap

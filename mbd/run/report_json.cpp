@@ -4,6 +4,7 @@
 #include "mbd/run/ordered_json.h"
 #include "mbd/run/overview.h"
 #include "mbd/run/prominence.h"
+#include "mbd/run/range_index.h"
 #include "mbd/run/result_files.h"
 #include "mbd/run/summary.h"
 #include "mbd/run/version.h"
@@ -317,8 +318,7 @@ Json overview_json(const Overview& overview, ShownDigits digits) {
 
 Json state_json(const System& system, const State& state, const Report& report) {
   Json bodies = Json::object(), errors = Json::object();
-  std::unordered_map<std::string, const ChannelRange*> ranges;
-  for (const ChannelRange& range : report.ranges()) ranges.emplace(range.channel->name, &range);
+  const RangeIndex ranges(report.ranges());
   for (std::size_t i = 1; i < system.bodies.size(); ++i) {
     const double* q = &state.q[3 * i];
     const double* v = &state.v[3 * i];
@@ -326,8 +326,8 @@ Json state_json(const System& system, const State& state, const Report& report) 
     if (!report.estimate.errors) continue;
     Json error = Json::object();
     for (const char* part : {"x", "y", "theta", "vx", "vy", "omega"})
-      if (const auto range = ranges.find(system.bodies[i].name + "." + part); range != ranges.end())
-        add_error(error, part, report.error_of(*range->second, &ChannelError::final));
+      if (const ChannelRange* const range = ranges.find(system.bodies[i].name + "." + part))
+        add_error(error, part, report.error_of(*range, &ChannelError::final));
     if (!error.empty()) append(errors, system.bodies[i].name) = std::move(error);
   }
   Json json{{"t", state.t}, {"bodies", std::move(bodies)}};

@@ -35,6 +35,8 @@ double size_of_pair(const System& system, int a, int b) {
 }
 
 std::vector<ContactAtStart> contacts_at(const LoadedModel& loaded, const State& state) {
+  const std::vector<ElementEntry>& elements = loaded.model.elements;
+  if (std::none_of(elements.begin(), elements.end(), [](const ElementEntry& entry) { return entry.kind->contact != nullptr; })) return {};
   const System& system = *loaded.system;
   State still = state;
   std::fill(still.v.begin(), still.v.end(), 0.0);
@@ -54,7 +56,7 @@ std::vector<ContactAtStart> contacts_at(const LoadedModel& loaded, const State& 
   const ScenePose pose(loaded.model, system, still);
   std::vector<ContactAtStart> contacts;
   int contact = -1; // elements are compiled in the order of the file, and each contact element has one contact
-  for (const ElementEntry& entry : loaded.model.elements) {
+  for (const ElementEntry& entry : elements) {
     const auto description = contact_of(entry, loaded.model);
     const std::string& name = entry.element->name;
     const auto gap = description ? value(name + ".gap") : std::nullopt, force = description ? value(name + ".force") : std::nullopt;

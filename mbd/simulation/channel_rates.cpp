@@ -1,9 +1,10 @@
 #include "mbd/simulation/channel_rates.h"
 
+#include <algorithm>
 #include <array>
-#include <map>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
 namespace steplap {
@@ -13,8 +14,13 @@ std::vector<int> rates_of(const System& system) {
       {{".x", ".vx"}, {".y", ".vy"}, {".theta", ".omega"}, {".vx", ".ax"}, {".vy", ".ay"}, {".omega", ".alpha"}}};
   static constexpr std::array<std::pair<const char*, const char*>, 6> k_requested = {
       {{".x", ".vx"}, {".y", ".vy"}, {".vx", ".ax"}, {".vy", ".ay"}, {".angle", ".rate"}, {".displacement", ".rate"}}};
-  std::map<std::string_view, int> place;
-  for (std::size_t c = 0; c < system.channels.size(); ++c) place[system.channels[c].name] = static_cast<int>(c);
+  const auto is_motion = [](std::string_view name) {
+    const auto ends_it = [name](const auto& pair) { return name.ends_with(pair.first) || name.ends_with(pair.second); };
+    return std::any_of(k_rates.begin(), k_rates.end(), ends_it) || std::any_of(k_requested.begin(), k_requested.end(), ends_it);
+  };
+  std::unordered_map<std::string_view, int> place;
+  for (std::size_t c = 0; c < system.channels.size(); ++c)
+    if (is_motion(system.channels[c].name)) place.emplace(system.channels[c].name, static_cast<int>(c));
   std::string asked;
   const auto find = [&](std::string_view of, std::string_view value) {
     asked.assign(of).append(value);

@@ -24,11 +24,11 @@ double tolerance_of_number(const ChannelRange& channel, double resolution, doubl
 
 // Returns the accuracy to which extremes of a channel are located, in the unit of the channel.
 double ExtremeFinder::tolerance(std::size_t c) const {
-  if (ranges_[c].channel->unit.empty()) return tolerance_of_number(ranges_[c], k_resolution, k_rounded_range);
+  if (range(c).channel->unit.empty()) return tolerance_of_number(range(c), k_resolution, k_rounded_range);
   const Kind& kind = kinds_[kind_[c]];
-  const double range = ranges_[c].high.value - ranges_[c].low.value;
+  const double spread = range(c).high.value - range(c).low.value;
   const double wanted =
-      k_resolution * (std::isfinite(range) ? range : 0.0) + k_noise * kind.range + k_rounded_range * std::max(kind.largest, kind.scale);
+      k_resolution * (std::isfinite(spread) ? spread : 0.0) + k_noise * kind.range + k_rounded_range * std::max(kind.largest, kind.scale);
   return jitter_.empty() ? wanted : std::max(wanted, jitter_[c]);
 }
 
@@ -36,9 +36,8 @@ double ExtremeFinder::tolerance(std::size_t c) const {
 // the start divided by the total mass.
 void ExtremeFinder::set_scales() {
   const auto kind_of = [this](const char* unit) -> Kind* {
-    for (std::size_t c = 0; c < count_; ++c)
-      if (ranges_[c].channel->unit == unit) return &kinds_[kind_[c]];
-    return nullptr;
+    const auto found = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& each) { return *each.unit == unit; });
+    return found == kinds_.end() ? nullptr : &*found;
   };
   const auto largest = [&](const char* unit) { return kind_of(unit) ? kind_of(unit)->largest : 0.0; };
   double mass = 0.0;

@@ -115,10 +115,10 @@ void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dyn
     const Snapshot snapshot = evaluate_dense(theta, integrator, dynamics);
     Places::Place& place = places.add(theta, open_.size());
     place.is_singular = is_singular_;
-    place.value[own] = ranges_[c].channel->value(snapshot);
+    place.value[own] = range(c).channel->value(snapshot);
     for (std::size_t k = own + 1; k < open_.size() && places.are_of_use(); ++k) {
       try {
-        place.value[k] = ranges_[open_[k]].channel->value(snapshot);
+        place.value[k] = range(open_[k]).channel->value(snapshot);
       } catch (const NumericalFailure&) { // not stored: reported if the channel's own search evaluates this point
       }
     }
@@ -137,7 +137,7 @@ void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dyn
     const int tops = tops_of(node_, c, sign, middles), count = integrator.is_adaptive() ? tops : std::min(tops, 1);
     for (int top = 0; top < count; ++top) {
       const int middle = middles[top];
-      const double record = sign * (sign > 0.0 ? ranges_[c].high.value : ranges_[c].low.value);
+      const double record = sign * (sign > 0.0 ? range(c).high.value : range(c).low.value);
       const double spread = spread_about(c, middle),
                    highest = std::max({sign * at(c, middle - 1), sign * at(c, middle), sign * at(c, middle + 1)});
       if (!(highest + spread > record + tolerance(c)) || !std::isfinite(spread)) continue;

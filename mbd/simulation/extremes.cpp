@@ -47,77 +47,86 @@ constexpr double k_well_resolved = 0.01, k_badly_resolved = 0.05;
 // Returns true for channels whose values are codes. They change only at events, so the ends of stretches contain their extremes.
 bool is_mode(const Channel& channel) { return !channel.codes.empty(); }
 
+// Returns the indices of the channels that have extremes.
+std::vector<std::size_t> searched_channels(const System& system) {
+  std::vector<std::size_t> searched;
+  for (std::size_t c = 0; c < system.channels.size(); ++c)
+    if (system.channels[c].has_extremes) searched.push_back(c);
+  return searched;
+}
+
 } // namespace
 
 const Extreme& ChannelRange::largest() const { return std::abs(low.value) > std::abs(high.value) ? low : high; }
 
 ExtremeFinder::ExtremeFinder(const System& system, int max_dimension)
-    : system_(system), count_(system.channels.size()), ranges_(count_), kind_(count_), screened_slot_(count_, -1),
-      before_(count_, k_unknown), node_(k_nodes, std::vector<double>(count_, k_unknown)), curve_(count_), curvature_(count_, 0.0),
-      step_t_(k_longest + 1), stride_(static_cast<std::size_t>(max_dimension)), y_(stride_), dy_(stride_), scratch_(count_),
-      faces_(system) {
+    : system_(system), ranges_(system.channels.size()), searched_(searched_channels(system)), count_(searched_.size()), kind_(count_),
+      screened_slot_(count_, -1), rate_of_(count_, k_no_rate), before_(count_, k_unknown),
+      node_(k_nodes, std::vector<double>(count_, k_unknown)), curve_(count_), curvature_(count_, 0.0), step_t_(k_longest + 1),
+      stride_(static_cast<std::size_t>(max_dimension)), y_(stride_), dy_(stride_), scratch_(count_), faces_(system) {
   step_y_.resize(stride_ * (k_longest + 1));
   step_k_.resize(stride_ * (k_longest + 1));
-  std::vector<std::string> units;
+  for (std::size_t i = 0; i < ranges_.size(); ++i) ranges_[i].channel = &system.channels[i];
+  const std::vector<int> rates = rates_of(system);
   for (std::size_t c = 0; c < count_; ++c) {
-    const Channel& channel = system.channels[c];
-    ranges_[c].channel = &channel;
-    const auto unit = std::find(units.begin(), units.end(), channel.unit);
-    kind_[c] = static_cast<int>(unit - units.begin());
-    if (unit == units.end()) units.push_back(channel.unit);
-    if (!channel.has_extremes) continue;
-    tracked_.push_back(c);
+    const Channel& channel = *range(c).channel;
+    const auto kind = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& each) { return *each.unit == channel.unit; });
+    kind_[c] = static_cast<int>(kind - kinds_.begin());
+    if (kind == kinds_.end()) kinds_.push_back({&channel.unit});
+    if (const int rate = rates[searched_[c]]; rate >= 0) {
+      const auto found = std::lower_bound(searched_.begin(), searched_.end(), static_cast<std::size_t>(rate));
+      const bool is_searched = found != searched_.end() && *found == static_cast<std::size_t>(rate);
+      rate_of_[c] = is_searched ? static_cast<int>(found - searched_.begin()) : k_rate_not_searched;
+    }
     if (channel.unit.empty()) dimensionless_.push_back(c);
     if (!channel.bounds) continue;
     screened_slot_[c] = static_cast<int>(bounds_.size());
     bounds_.emplace_back();
   }
   known_direction_.reserve(count_);
-  rate_of_ = rates_of(system);
-  formulas_ = std::make_unique<FormulaExtremes>(system, rate_of_);
+  formulas_ = std::make_unique<FormulaExtremes>(system, searched_, rates);
   bounds_before_ = bounds_;
   is_wanted_.assign(bounds_.size(), 1);
-  kinds_.resize(units.size());
   open_.reserve(count_);
 }
 
 void ExtremeFinder::note(std::size_t c, double value, double t) {
-  ChannelRange& range = ranges_[c];
+  ChannelRange& r = range(c);
   if (std::isnan(value)) {
-    range.had_no_value = true;
+    r.had_no_value = true;
     return;
   }
-  if (!(value >= range.low.value)) {
-    range.low = {value, t};
-    range.is_low_singular = is_singular_;
+  if (!(value >= r.low.value)) {
+    r.low = {value, t};
+    r.is_low_singular = is_singular_;
   }
-  if (!(value <= range.high.value)) {
-    range.high = {value, t};
-    range.is_high_singular = is_singular_;
+  if (!(value <= r.high.value)) {
+    r.high = {value, t};
+    r.is_high_singular = is_singular_;
   }
 }
 
 void ExtremeFinder::take(std::size_t c, double t, const Snapshot& snapshot, double* values) {
-  values[c] = ranges_[c].channel->value(snapshot);
+  values[c] = range(c).channel->value(snapshot);
   take(c, t, values[c]);
 }
 
 void ExtremeFinder::take(std::size_t c, double t, double value) {
   if (!known_direction_.empty()) record_known_direction(c, value);
-  const bool is_new = !(value >= ranges_[c].low.value && value <= ranges_[c].high.value);
+  const bool is_new = !(value >= range(c).low.value && value <= range(c).high.value);
   if (!is_new) return;
   note(c, value, t);
   if (!std::isfinite(value)) return;
   Kind& kind = kinds_[kind_[c]];
-  const double range = ranges_[c].high.value - ranges_[c].low.value;
-  if (std::isfinite(range)) kind.range = std::max(kind.range, range);
+  const double spread = range(c).high.value - range(c).low.value;
+  if (std::isfinite(spread)) kind.range = std::max(kind.range, spread);
   kind.largest = std::max(kind.largest, std::abs(value));
 }
 
 // Evaluates channels at an end of a stretch: all, or without `is_everything` only those whose extremes may be exceeded according to their
 // bounds.
 void ExtremeFinder::evaluate(double t, const Snapshot& snapshot, double* values, bool is_everything) {
-  for (const std::size_t c : tracked_)
+  for (std::size_t c = 0; c < count_; ++c)
     if (is_everything || !is_ruled_out(c)) take(c, t, snapshot, values);
     else values[c] = k_unknown;
 }
@@ -125,14 +134,14 @@ void ExtremeFinder::evaluate(double t, const Snapshot& snapshot, double* values,
 // Determines which expensive channels may exceed their extremes, from their bounds at the last two ends.
 void ExtremeFinder::screen(const Snapshot& snapshot) {
   std::swap(bounds_, bounds_before_);
-  for (const std::size_t c : tracked_) {
+  for (std::size_t c = 0; c < count_; ++c) {
     const int slot = screened_slot_[c];
     if (slot < 0) continue;
-    const ValueBounds now = ranges_[c].channel->bounds(snapshot), before = bounds_before_[slot];
+    const ValueBounds now = range(c).channel->bounds(snapshot), before = bounds_before_[slot];
     bounds_[slot] = now;
     const double up = now.high + std::abs(now.high - before.high), down = now.low - std::abs(now.low - before.low);
     const double slack = tolerance(c);
-    is_wanted_[slot] = !(up <= ranges_[c].high.value + slack) || !(down >= ranges_[c].low.value - slack);
+    is_wanted_[slot] = !(up <= range(c).high.value + slack) || !(down >= range(c).low.value - slack);
   }
 }
 
@@ -144,11 +153,11 @@ void ExtremeFinder::begin(double t, const Snapshot& snapshot) {
   screen(snapshot);
   evaluate(t, snapshot, node_[0].data(), is_start);
   if (is_start) {
-    for (std::size_t c = 0; c < count_; ++c) ranges_[c].first = ranges_[c].channel->value(snapshot);
+    for (ChannelRange& each : ranges_) each.first = each.channel->value(snapshot);
     set_scales();
   }
   for (const std::size_t c : dimensionless_)
-    if (!ranges_[c].first_above_one && node_[0][c] > 1.0) ranges_[c].first_above_one = t;
+    if (!range(c).first_above_one && node_[0][c] > 1.0) range(c).first_above_one = t;
   formulas_->begin(snapshot);
   faces_.begin(snapshot);
   t_ = t;
@@ -162,7 +171,7 @@ class ExtremeFinder::Site : public ExtremeSite {
 public:
   Site(ExtremeFinder& finder, double h, Integrator* integrator, Dynamics* dynamics)
       : finder_(finder), h_(h), integrator_(integrator), dynamics_(dynamics) {}
-  ChannelRange& range(std::size_t channel) override { return finder_.ranges_[channel]; }
+  ChannelRange& range(std::size_t channel) override { return finder_.range(channel); }
   [[nodiscard]] double tolerance(std::size_t channel) const override { return finder_.tolerance(channel); }
   Snapshot evaluate_dense(double theta) override { return finder_.evaluate_dense(theta, *integrator_, *dynamics_); }
   void note(std::size_t channel, double value, double theta) override { finder_.take(channel, finder_.t_ + theta * h_, value); }
@@ -182,20 +191,30 @@ void ExtremeFinder::pass_between(double t, const Snapshot& snapshot) {
 }
 
 void ExtremeFinder::finish(const Snapshot& snapshot) {
-  for (std::size_t c = 0; c < count_; ++c) {
-    ranges_[c].final = ranges_[c].channel->value(snapshot);
-    ranges_[c].resolution = std::max(tolerance(c), formulas_->unclosed(c, ranges_[c]));
-  }
+  for (ChannelRange& each : ranges_) each.final = each.channel->value(snapshot);
+  for (std::size_t c = 0; c < count_; ++c) range(c).resolution = std::max(tolerance(c), formulas_->unclosed(c, range(c)));
   const auto beyond = [](double extreme, double sure) { return extreme == sure || std::isnan(extreme) ? 0.0 : std::abs(extreme - sure); };
   for (std::size_t c = 0; c < known_direction_.size(); ++c) {
-    ranges_[c].unsure_low = beyond(ranges_[c].low.value, known_direction_[c].low);
-    ranges_[c].unsure_high = beyond(ranges_[c].high.value, known_direction_[c].high);
+    range(c).unsure_low = beyond(range(c).low.value, known_direction_[c].low);
+    range(c).unsure_high = beyond(range(c).high.value, known_direction_[c].high);
   }
 }
 
 void ExtremeFinder::finish_rates(const Snapshot& snapshot, double before) {
-  for (std::size_t c = 0; c < count_; ++c)
-    if (!is_mode(*ranges_[c].channel)) ranges_[c].final_rate = (ranges_[c].final - ranges_[c].channel->value(snapshot)) / before;
+  for (ChannelRange& each : ranges_)
+    if (!is_mode(*each.channel)) each.final_rate = (each.final - each.channel->value(snapshot)) / before;
+}
+
+void ExtremeFinder::begin_bends(const Snapshot& snapshot) {
+  for (ChannelRange& each : ranges_) each.final_bend = is_mode(*each.channel) ? 0.0 : each.channel->value(snapshot);
+}
+
+void ExtremeFinder::finish_bends(const Snapshot& snapshot, double before) {
+  for (ChannelRange& each : ranges_) {
+    const double middle = each.final_bend;
+    each.final_bend = is_mode(*each.channel) ? 0.0 : (each.final - 2.0 * middle + each.channel->value(snapshot)) / (before * before);
+    if (!std::isfinite(each.final_bend)) each.final_bend = 0.0;
+  }
 }
 
 // --- along the steps --------------------------------------------------------------------------------------------
@@ -298,7 +317,7 @@ void ExtremeFinder::close(double t, Integrator& integrator, Dynamics& dynamics) 
 // bodies.
 bool ExtremeFinder::turns_inside(std::size_t c, double h) const {
   const int rate = rate_of_[c];
-  if (rate < 0) return false;
+  if (rate < 0) return rate == k_rate_not_searched; // values of the rate are unknown: the channel may turn
   const double s0 = h * at(rate, 0), s1 = h * at(rate, k_last), rise = at(c, k_last) - at(c, 0);
   if (!(s0 * s1 > 0.0)) return s0 != 0.0 || s1 != 0.0;
   // The slope is s0 + 2 (3 rise − 2 s0 − s1) θ + 3 (s0 + s1 − 2 rise) θ²; its extreme value is compared with the sign of s0.
@@ -312,13 +331,13 @@ bool ExtremeFinder::suspect(double h) {
   const double *const first = node_[0].data(), *const end = node_[k_last].data(), *const before = before_.data();
   const double h_last = h_last_, share = h / h_last, halves = 1.0 + h_last / h,
                square = h * h; // h² converts between second differences of this stretch and curvature per s²
-  for (const std::size_t c : tracked_) {
+  for (std::size_t c = 0; c < count_; ++c) {
     const double a = first[c], b = end[c];
     ChannelSearchState& curve = curve_[c];
     curve.is_open = false;
     curve.error = std::numeric_limits<double>::infinity();
-    if (h_last > 0.0 && a == b && a == before[c] && curvature_[c] == 0.0 && rate_of_[c] < 0) continue; // channel at rest
-    if (is_mode(*ranges_[c].channel) || formulas_->is_formula(c) || is_ruled_out(c) || std::isinf(a) || std::isinf(b)) continue;
+    if (h_last > 0.0 && a == b && a == before[c] && curvature_[c] == 0.0 && rate_of_[c] == k_no_rate) continue; // channel at rest
+    if (is_mode(*range(c).channel) || formulas_->is_formula(c) || is_ruled_out(c) || std::isinf(a) || std::isinf(b)) continue;
     const double slope = b - a, last = h_last > 0.0 ? (a - before[c]) * share : k_unknown;
     if (!std::isnan(slope) && !std::isnan(last)) { // change over this stretch, and over the same duration before
       const double bend_now = std::abs(slope - last) / halves;
@@ -327,8 +346,10 @@ bool ExtremeFinder::suspect(double h) {
       const bool turns = turns_inside(c, h);
       if (std::abs(slope) > bend && !turns) continue; // monotonic: no extreme inside
       const double slack = tolerance(c);
-      const double gain = 0.25 * (turns ? std::max({bend, std::abs(h * at(rate_of_[c], 0)), std::abs(h * at(rate_of_[c], k_last))}) : bend);
-      const ChannelRange& r = ranges_[c];
+      const int rate = rate_of_[c];
+      const double steepest = turns && rate >= 0 ? std::max(std::abs(at(rate, 0)), std::abs(at(rate, k_last))) : 0.0;
+      const double gain = 0.25 * std::max(bend, std::abs(h) * steepest);
+      const ChannelRange& r = range(c);
       if (gain <= slack) continue;
       if (std::max(a, b) + gain <= r.high.value + slack && std::min(a, b) - gain >= r.low.value - slack) continue;
     }
@@ -362,7 +383,7 @@ static double interpolated(const std::vector<std::vector<double>>& nodes, std::s
 bool ExtremeFinder::settle(std::size_t c, int level) {
   const int n = 1 << level;
   const double slack = tolerance(c);
-  const ChannelRange& r = ranges_[c];
+  const ChannelRange& r = range(c);
   // curve_[c].error is the deviation of the polynomial of half the degree at the new nodes. For a smooth curve, doubling the number of
   // nodes squares the relative error.
   NodePolynomial::Values v;
@@ -386,7 +407,7 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
     if (error > slack) return false;
     // Beyond k_at_pole only the magnitude matters, which the nodes show. Between them a polynomial through reciprocals of rounding errors
     // may have any sign.
-    if (ranges_[c].channel->unit.empty() && std::abs(best) > k_at_pole) continue;
+    if (range(c).channel->unit.empty() && std::abs(best) > k_at_pole) continue;
     const double bit = k_bit_of_slack * slack; // accuracy of the maximum of the polynomial
     const auto top = through_nodes(node_, c, level, sign).top_above(record + slack - bit - error, bit);
     if (!top || !(top->value + bit + error > record + slack)) continue;
@@ -410,7 +431,7 @@ void ExtremeFinder::check_tops(int level, Integrator& integrator, Dynamics& dyna
     const double t = t_ + top.theta * (t1_ - t_);
     bool is_exact = true;
     if (!are_many) {
-      const double value = ranges_[top.channel].channel->value(evaluate_dense(top.theta, integrator, dynamics));
+      const double value = range(top.channel).channel->value(evaluate_dense(top.theta, integrator, dynamics));
       take(top.channel, t, value);
       is_exact = std::abs(value - top.value) <= tolerance(top.channel);
     } else if (level == 1) {
@@ -434,11 +455,11 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
     // The value in the middle may reveal an extreme that the ends did not indicate. All channels are checked, because everything has been
     // evaluated there. Fixed steps are excluded: near the end of a slip their accuracy of its direction is too low.
     if (level == 1 && integrator.is_adaptive()) {
-      for (const std::size_t c : tracked_) {
+      for (std::size_t c = 0; c < count_; ++c) {
         ChannelSearchState& curve = curve_[c];
-        if (curve.is_open || rate_of_[c] >= 0 || formulas_->is_formula(c))
+        if (curve.is_open || rate_of_[c] != k_no_rate || formulas_->is_formula(c))
           continue; // turns_inside() already covers positions and velocities
-        const ChannelRange& r = ranges_[c];
+        const ChannelRange& r = range(c);
         const double a = at(c, 0), b = at(c, k_last), reach = k_within_reach * (r.high.value - r.low.value);
         if (std::max(a, b) + reach < r.high.value && std::min(a, b) - reach > r.low.value) continue;
         if (a == b && a == before_[c]) continue; // channel at rest
@@ -550,7 +571,7 @@ bool ExtremeFinder::is_jitter(std::size_t c, double change) {
 // Finds by bisection the first time at which a channel without unit exceeds 1 (ChannelRange::first_above_one).
 void ExtremeFinder::find_crossings(Integrator& integrator, Dynamics& dynamics) {
   for (const std::size_t c : dimensionless_) {
-    ChannelRange& r = ranges_[c];
+    ChannelRange& r = range(c);
     if (r.first_above_one || !(r.high.value > 1.0)) continue;
     if (r.high.t <= t_) { // the largest value was reached before the present stretch
       r.first_above_one = r.high.t;
@@ -576,10 +597,10 @@ void ExtremeFinder::adapt_length() {
     return;
   }
   double worst = 0.0;
-  for (const std::size_t c : tracked_) {
+  for (std::size_t c = 0; c < count_; ++c) {
     const double off = std::abs((at(c, k_last) - at(c, 0)) - (at(c, 0) - before_[c]) * (h / h_last_));
     if (!std::isfinite(off)) continue;
-    const ChannelRange& r = ranges_[c];
+    const ChannelRange& r = range(c);
     const double scale = r.high.value - r.low.value + (tolerance(c) / k_badly_resolved);
     worst = std::max(worst, off / scale);
   }

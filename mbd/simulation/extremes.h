@@ -43,6 +43,7 @@ struct ChannelRange {
   double first = 0.0;               ///< value at the start
   double final = 0.0;               ///< value at the end
   double final_rate = std::numeric_limits<double>::quiet_NaN(); ///< time derivative at the end, in the unit per s; NaN: unknown
+  double final_bend = 0.0; ///< second time derivative at the end, in the unit per s²; 0 if unknown (ExtremeFinder::finish_bends())
   /// Accuracy to which the extremes are located; excesses smaller than this were not searched for. Infinite: the true extremes may be
   /// arbitrarily larger.
   double resolution = 0.0;
@@ -79,6 +80,9 @@ public:
   void finish(const Snapshot& snapshot);
   /// Computes ChannelRange::final_rate from the state `before` seconds earlier on the same motion. Precondition: finish().
   void finish_rates(const Snapshot& snapshot, double before);
+  /// Starts and ends the computation of ChannelRange::final_bend from the states `before` and 2 `before` seconds earlier, in this order.
+  void begin_bends(const Snapshot& snapshot);
+  void finish_bends(const Snapshot& snapshot, double before);
 
   /// Returns the ranges in the order of the system's channels; complete after finish().
   [[nodiscard]] const std::vector<ChannelRange>& ranges() const { return ranges_; }
@@ -103,7 +107,8 @@ private:
     bool is_open = false; ///< the search for an extreme is not finished
     double error = 0.0;   ///< error of the polynomial through the nodes, in the unit of the channel
   };
-  struct Kind { ///< data common to channels with the same unit
+  struct Kind {                        ///< data common to channels with the same unit
+    const std::string* unit = nullptr; ///< never nullptr
     double range = 0.0, largest = 0.0;
     double scale = 0.0; ///< expected magnitude, used while everything is at rest
   };
@@ -144,17 +149,22 @@ private:
   void end_stretch(double t, const double* dy, Integrator& integrator, Dynamics& dynamics);
   void adapt_length();
   [[nodiscard]] double tolerance(std::size_t c) const;
+  [[nodiscard]] ChannelRange& range(std::size_t c) { return ranges_[searched_[c]]; }
+  [[nodiscard]] const ChannelRange& range(std::size_t c) const { return ranges_[searched_[c]]; }
   [[nodiscard]] double at(std::size_t c, int node) const { return node_[node][c]; }
   [[nodiscard]] bool is_ruled_out(std::size_t c) const { return screened_slot_[c] >= 0 && !is_wanted_[screened_slot_[c]]; }
 
+  static constexpr int k_no_rate = -1, k_rate_not_searched = -2;
+
   const System& system_;
-  std::size_t count_; ///< number of channels
-  std::vector<ChannelRange> ranges_;
+  std::vector<ChannelRange> ranges_;  ///< of all channels of the system
+  std::vector<std::size_t> searched_; ///< indices in the system of the channels that have extremes
+  // From here on "per channel" means per channel of searched_, and an index of a channel is one in searched_.
+  std::size_t count_; ///< size of searched_
   std::vector<Kind> kinds_;
-  std::vector<int> kind_;            ///< per channel: index in kinds_
-  std::vector<int> screened_slot_;   ///< per channel: index in bounds_ if it has cheap bounds, otherwise −1
-  std::vector<int> rate_of_;         ///< per channel: index of the channel that is its rate; −1: none
-  std::vector<std::size_t> tracked_; ///< indices of channels that have extremes
+  std::vector<int> kind_;          ///< per channel: index in kinds_
+  std::vector<int> screened_slot_; ///< per channel: index in bounds_ if it has cheap bounds, otherwise −1
+  std::vector<int> rate_of_;       ///< per channel: index of the channel that is its rate, k_no_rate or k_rate_not_searched
   std::vector<std::size_t> dimensionless_;
 
   double t_ = 0.0, t_last_ = 0.0, h_last_ = 0.0; ///< start of the stretch; start and length of the previous one, s; length 0: none

@@ -43,20 +43,21 @@ std::vector<FormulaChannel::Leaf> leaves_of(const System& system) {
 
 } // namespace
 
-FormulaExtremes::FormulaExtremes(const System& system, const std::vector<int>& rate_of)
-    : is_formula_(system.channels.size(), 0), curves_(leaves_of(system)), rate_(curves_.count()), rate_factor_(curves_.count(), 1.0),
+FormulaExtremes::FormulaExtremes(const System& system, const std::vector<std::size_t>& searched, const std::vector<int>& rate_of)
+    : is_formula_(searched.size(), 0), curves_(leaves_of(system)), rate_(curves_.count()), rate_factor_(curves_.count(), 1.0),
       first_(curves_.count()), last_(first_), before_(first_), first_rate_(first_), last_rate_(first_), curvature_(first_), error_(first_) {
   const std::vector<FormulaChannel::Leaf> leaves = leaves_of(system);
   std::size_t nodes = 0;
-  for (std::size_t c = 0; c < system.channels.size(); ++c) {
-    const Channel& channel = system.channels[c];
-    for (std::size_t i = 0; i < leaves.size(); ++i)
-      if (leaves[i].name == channel.name && rate_of[c] >= 0) {
-        rate_[i] = system.channels[static_cast<std::size_t>(rate_of[c])].value;
-        rate_factor_[i] = leaves[i].factor;
+  for (std::size_t i = 0; i < system.channels.size() && !leaves.empty(); ++i)
+    for (std::size_t k = 0; k < leaves.size(); ++k)
+      if (leaves[k].name == system.channels[i].name && rate_of[i] >= 0) {
+        rate_[k] = system.channels[static_cast<std::size_t>(rate_of[i])].value;
+        rate_factor_[k] = leaves[k].factor;
       }
+  for (std::size_t c = 0; c < searched.size(); ++c) {
+    const Channel& channel = system.channels[searched[c]];
     const FormulaChannel* const formula = formula_of(channel);
-    if (!formula || !channel.has_extremes) continue;
+    if (!formula) continue;
     is_formula_[c] = 1;
     FormulaTarget& sought = formulas_.emplace_back(FormulaTarget{c, formula, {}, channel.unit.empty()});
     for (const FormulaChannel::Leaf& leaf : formula->leaves())

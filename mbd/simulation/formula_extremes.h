@@ -37,8 +37,9 @@ public:
 /// Computes extremes of all channels that are formulas, stretch by stretch.
 class FormulaExtremes {
 public:
-  /// `rate_of`: per channel the index of the channel that is its rate; −1: none.
-  FormulaExtremes(const System& system, const std::vector<int>& rate_of);
+  /// `searched`: indices of the channels that have extremes; all functions identify a channel by its place in this list. `rate_of`: per
+  /// channel of the system the index of the channel that is its rate; −1: none.
+  FormulaExtremes(const System& system, const std::vector<std::size_t>& searched, const std::vector<int>& rate_of);
 
   /// Returns true if no channel is a formula.
   [[nodiscard]] bool is_empty() const { return formulas_.empty(); }

@@ -504,11 +504,24 @@ void RunLeg::finish_extremes() {
   // of positions is still accurate to 1e-6.
   constexpr double k_before = 1e-7;
   const double before = k_before * options_.end;
-  for (int i = 0; i < dynamics_.dimension(); ++i) y_[static_cast<std::size_t>(i)] -= before * dy_[static_cast<std::size_t>(i)];
+  const std::vector<double> end = y_, rates = dy_;
+  const auto n = static_cast<std::size_t>(dynamics_.dimension());
+  for (std::size_t i = 0; i < n; ++i) y_[i] -= before * rates[i];
   const long evaluations = dynamics_.evaluations();
   dynamics_.rates(t - before, y_.data(), dy_.data());
-  evaluations_behind_end_ += dynamics_.evaluations() - evaluations;
   extremes_->finish_rates(dynamics_.snapshot(dy_.data()), before);
+  if (options_.has_growth) {               // second derivatives: earlier states by the present accelerations
+    constexpr double k_well_before = 1e-4; // of the run: differences of positions are then accurate to 1e-8 of them
+    const double step = k_well_before * options_.end;
+    const auto coordinates = static_cast<std::size_t>(dynamics_.coordinate_count());
+    for (const double back : {step, 2.0 * step}) {
+      for (std::size_t i = 0; i < n; ++i) y_[i] = end[i] - back * rates[i];
+      for (std::size_t i = 0; i < coordinates; ++i) y_[i] += 0.5 * back * back * rates[coordinates + i];
+      dynamics_.rates(t - back, y_.data(), dy_.data());
+      back == step ? extremes_->begin_bends(dynamics_.snapshot(dy_.data())) : extremes_->finish_bends(dynamics_.snapshot(dy_.data()), step);
+    }
+  }
+  evaluations_behind_end_ += dynamics_.evaluations() - evaluations;
 }
 
 // Records in statistics_ that a time step has averaged part of a load: bodies receive its impulse, but no force or acceleration shows its

@@ -39,7 +39,7 @@ void ExtremeFinder::check_slip_directions(const Integrator& integrator, Dynamics
   is_unsure_ = !is_known && (is_unsure_ || (!is_new && slip_ <= before));
   if (!is_unsure_ || !known_direction_.empty()) return;
   known_direction_.resize(count_);
-  for (std::size_t c = 0; c < count_; ++c) known_direction_[c] = {ranges_[c].low.value, ranges_[c].high.value};
+  for (std::size_t c = 0; c < count_; ++c) known_direction_[c] = {range(c).low.value, range(c).high.value};
 }
 
 void ExtremeFinder::begin(double t, const Snapshot& snapshot, const Integrator& integrator, Dynamics& dynamics) {
@@ -48,7 +48,7 @@ void ExtremeFinder::begin(double t, const Snapshot& snapshot, const Integrator& 
 }
 
 void ExtremeFinder::record_known_direction(std::size_t c, double value) {
-  if ((is_unsure_ && turns_with_slips(*ranges_[c].channel)) || std::isnan(value)) return;
+  if ((is_unsure_ && turns_with_slips(*range(c).channel)) || std::isnan(value)) return;
   KnownDirectionRange& sure = known_direction_[c];
   if (!(value >= sure.low)) sure.low = value;
   if (!(value <= sure.high)) sure.high = value;

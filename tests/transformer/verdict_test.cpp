@@ -284,6 +284,8 @@ TEST_CASE("criteria and plots that make no sense are errors of the model") {
   says("[[plot]]\nname = \"p\"\nchannels = [\"ball.y\"]\nbounds = [\"ball.vy\"]\n", "a.toml:17:10: error: plot 'p'");
   says("[[plot]]\nname = \"p\"\nchannels = [\"ball.y\", \"ball.vy\"]\n", "plot them apart");
   says("[[plot]]\nname = \"p\"\nchannels = [\"ball.z\"]\n", "no channel matches 'ball.z'");
+  says("[[plot]]\nname = \"p\"\nchannels = [\"whole.bal*\"]\n",
+       "'whole.balance' is computed on request only: add also = [\"whole.balance\"]");
   says("[[plot]]\nname = \"p\"\n", "channels");
 }
 

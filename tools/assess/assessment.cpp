@@ -69,6 +69,10 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
   if (!problems.empty()) throw ModelError(std::move(problems));
   a.uncertain = std::make_unique<UncertainValues>(a.models);
   a.shared = find_shared_frictions(a.models);
+  if (const std::string apart = unshared_planes(a.models, a.shared); !apart.empty())
+    a.missing.push_back({Evidence::planes,
+                         "Friction " + apart + " carries loads in different planes, and each is judged as if the other did not exist.",
+                         "If it is one friction, give both one name, or one 'shared_friction'."});
   for (const std::string& record : records) {
     throw_if_stopped(options, "before '" + record + "' was read");
     a.records.push_back(read_without_events(record, options.reading));

@@ -23,7 +23,8 @@ enum class Evidence {
   clock,     ///< the order of the records is not known
   bandwidth, ///< the decision depends on frequencies above the filter or the sampling rate
   place,     ///< the margin is smaller than the error that the recorder's position on the tank can cause
-  vibration  ///< the decision depends on vibration below the lowest threshold that the computing budget permits
+  vibration, ///< the decision depends on vibration below the lowest threshold that the computing budget permits
+  planes     ///< two models rest on friction in different planes, and none of it is shared
 };
 /// Returns the word used with --accept.
 [[nodiscard]] const char* name_of(Evidence item);

@@ -159,6 +159,36 @@ std::vector<SharedFriction> find_shared_frictions(std::vector<DrivenModel>& mode
   return found;
 }
 
+std::string unshared_planes(const std::vector<DrivenModel>& models, const std::vector<SharedFriction>& shared) {
+  struct Floor {
+    std::string friction;
+    char axis = ' '; ///< the record's axis along it
+  };
+  constexpr double k_floor = 0.7; // least cosine between gravity and the normal of a contact that carries weight
+  std::vector<std::optional<Floor>> floors; // per model, its first
+  for (const DrivenModel& model : models) {
+    floors.emplace_back();
+    const FrictionNames frictions = friction_names(model.given);
+    if (frictions.empty()) continue;
+    const Compiled compiled(model);
+    for (const auto& [name, elements] : frictions) {
+      const auto plane = friction_plane(*compiled.system, name, elements, compiled.system->gravity, model.file);
+      if (!plane || !(std::abs(plane->tilt) > k_floor) || letter_along(model, plane->tangent) == ' ') continue;
+      floors.back() = Floor{name, letter_along(model, plane->tangent)};
+      break;
+    }
+  }
+  const auto share = [&](std::size_t i, std::size_t k) {
+    return std::any_of(shared.begin(), shared.end(),
+                       [&](const SharedFriction& each) { return each.planes[0].model == i && each.planes[1].model == k; });
+  };
+  for (std::size_t i = 0; i < models.size(); ++i)
+    for (std::size_t k = i + 1; k < models.size(); ++k)
+      if (floors[i] && floors[k] && floors[i]->axis != floors[k]->axis && !share(i, k))
+        return "'" + floors[i]->friction + "' of '" + models[i].name + "' and '" + floors[k]->friction + "' of '" + models[k].name + "'";
+  return {};
+}
+
 // --- evaluation of an event -------------------------------------------------------------------------
 
 struct SharedFrictionCourse::Instant {

@@ -45,6 +45,9 @@ struct SharedFriction {
 /// Finds the shared frictions of all models and sets their `traced`. Throws ModelError if elements with forces to be summed do not act
 /// along the same line.
 [[nodiscard]] std::vector<SharedFriction> find_shared_frictions(std::vector<DrivenModel>& models);
+/// Returns the frictions of the first two models that lie in different planes, both rest on friction and share none of it, as "'floor' of
+/// 'length.toml' and 'floor across' of 'across.toml'"; "" if there are none.
+[[nodiscard]] std::string unshared_planes(const std::vector<DrivenModel>& models, const std::vector<SharedFriction>& shared);
 
 /// Result of one event for a shared friction.
 struct SharedPassage : SharedUse {

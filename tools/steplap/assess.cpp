@@ -81,8 +81,8 @@ Of a static proof (docs/how-to/prove_statically.md): 0 the machine is proven to 
       {"--second", &o->second_records, "FILE",
        "record of a second recorder on the same machine, read like the first; may be repeated. The less favourable decision counts"},
       {"--accept", &o->accepted, "EVIDENCE",
-       "decide although it is missing: clipped, gaps, peaks, cut, comments, fall, dead, unit, axis, coverage, clock, bandwidth, place or "
-       "vibration; may be repeated"},
+       "decide although it is missing: clipped, gaps, peaks, cut, comments, fall, dead, unit, axis, coverage, clock, bandwidth, place, "
+       "vibration or planes; may be repeated"},
       {"--budget", &o->budget, "S", "computing time, for each day of record, to find how low the threshold has to be: 60"},
       {"--pulse", &o->pulse, "SHAPE",
        "of lists of peaks without waveforms: drive the models by a half-sine, haversine or triangle; \"half-sine 50 ms\" where the list "

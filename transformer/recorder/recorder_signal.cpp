@@ -202,7 +202,24 @@ Signal signal_of(const Recorder& r, const Window& window, const std::array<doubl
     if (k > 0) pieces[k - 1].c[1] = (pieces[k].c[0] - pieces[k - 1].c[0]) / (pieces[k].start - pieces[k - 1].start);
   }
   pieces.back().c[0] = 0.0;
-  return Signal(std::move(pieces));
+  Signal signal(std::move(pieces));
+  signal.doubt_cut_end();
+  return signal;
+}
+
+// Adds a doubt for each axis in the signal that was cut off by the recorder's range within the window.
+void doubt_clipped(const Recording& recording, const Window& window, const std::array<double, 3>& direction, Signal& signal) {
+  constexpr double k_at_top = 0.9; // of the clipped value, relative to rest: the window holds samples there
+  for (std::size_t i = 0; i < recording.layout.axes.size(); ++i) {
+    const AxisFacts& facts = recording.facts.axes[i];
+    if (direction[i] == 0.0 || recording.layout.holds || facts.flat_longest < 3) continue;
+    const double top = std::abs(facts.flat_value - facts.rest);
+    const auto& values = window.filtered[i];
+    if (std::none_of(values.begin(), values.end(), [&](double a) { return std::abs(a) > k_at_top * top; })) continue;
+    signal.add_doubt(signal.breakpoints().front(),
+                     std::string("axis ") + recording.layout.axes[i].axis + " stays at " + rounded_text(facts.flat_value / k_gravity, 3) +
+                         " g for " + std::to_string(facts.flat_longest) + " samples: it is clipped, and its peaks were higher");
+  }
 }
 
 Signal read_signal(const Recorder& r) {
@@ -238,7 +255,10 @@ Signal read_signal(const Recorder& r) {
     for (const Samples::Row& row : segment.rows) conditioner.put(row.t, row.a.data());
     conditioner.end_segment();
   }
-  return signal_of(r, window_of(r, signal, events), direction);
+  const Window window = window_of(r, signal, events);
+  Signal result = signal_of(r, window, direction);
+  doubt_clipped(recording, window, direction, result);
+  return result;
 }
 
 Signal build_recorder(const SignalDefinition& definition) {

@@ -222,6 +222,41 @@ force_x = "f"
   fs::remove_all(folder);
 }
 
+TEST_CASE("a record is in the units of its header, and open if it ends within an event") {
+  const fs::path folder = fs::temp_directory_path() / ("steplap_header_" + std::to_string(::getpid()));
+  fs::create_directory(folder);
+  const auto impulse = [&](const std::string& rows, const std::string& fields = "", double* doubts = nullptr) {
+    std::ofstream(folder / "a.csv") << rows;
+    const std::string text = "simulation.end = 1.0\n[[signal]]\nname = \"f\"\nkind = \"record\"\nfile = \"" + (folder / "a.csv").string() +
+                             "\"\n" + fields +
+                             "[[body]]\nname = \"m\"\nmass = 1.0\ninertia = 1.0\n[[element]]\nkind = \"load\"\nname = \"push\"\nat = "
+                             "\"m\"\nforce_x = \"f\"\n[[acceptance]]\nname = \"slow\"\nchannel = \"m.vx\"\nwithin = 1e3\n";
+    const Report report = judged_run(load_model_text(text, "record.toml"), {});
+    if (doubts)
+      *doubts = static_cast<double>(
+          std::count_if(report.findings.begin(), report.findings.end(), [](const Finding& f) { return f.code == "record_in_doubt"; }));
+    return report.run.result.final_state.v[3];
+  };
+  // A triangle of 2 units, 0.2 s long.
+  const std::string rows = "\n0,0\n0.1,2\n0.2,0\n", thousand = "\n0,0\n100,2\n200,0\n";
+  CHECK(impulse("t,f" + rows) == doctest::Approx(0.2));
+  CHECK(impulse("t [s],f [kN]" + rows) == doctest::Approx(200.0));
+  CHECK(impulse("t [ms],f [N]" + thousand) == doctest::Approx(0.2));
+  CHECK(impulse("t [s],a [g]" + rows) == doctest::Approx(0.2 * 9.80665)); // of an acceleration, not grams
+  CHECK(impulse("t,f" + rows, "unit = \"kN\"\n") == doctest::Approx(200.0));
+  CHECK(impulse("t [s],f [kN]" + rows, "unit = \"kN\"\n") == doctest::Approx(200.0));
+  CHECK_THROWS_WITH_AS(impulse("t [s],f [kN]" + rows, "unit = \"N\"\n"), doctest::Contains("but the column says [kN]"), ModelError);
+  CHECK_THROWS_WITH_AS(impulse("t [s],f [furlongs of hay]" + rows), doctest::Contains("is not known: give it by 'unit'"), ModelError);
+  double doubts = 0.0;
+  (void)impulse("t,f" + rows, "", &doubts);
+  CHECK(doubts == 0.0);
+  (void)impulse("t,f\n0,0\n0.1,2\n", "", &doubts); // ends at its peak
+  CHECK(doubts == 1.0);
+  (void)impulse("t,f\n0,0\n0.1,2\n", "after = \"hold\"\n", &doubts);
+  CHECK(doubts == 0.0);
+  fs::remove_all(folder);
+}
+
 TEST_CASE("settings are laid over a model made in code, too") {
   const auto loaded = load_given(read_given_model(STEPLAP_MODELS "/layouts/three_limb.toml", program_catalogue()), "three_limb");
   RunOptions options;

@@ -80,6 +80,23 @@ TEST_CASE("friction that dry contacts do not have needs a source, whatever eleme
     }
 }
 
+TEST_CASE("gravity of no planet caps the verdict") {
+  const std::string body = "[[body]]\nname = \"a\"\nmass = 1.0\ninertia = 1.0\n";
+  for (const auto& [gravity, is_found] : {std::pair("[0, -9.81]", false),
+                                          {"[0, 0]", false},
+                                          {"[6.9, -6.9]", false},
+                                          {"[0, -1.62]", false},
+                                          {"[0, -98.1]", true},
+                                          {"[0, -0.981]", true}}) {
+    CAPTURE(gravity);
+    const std::vector<Finding> findings =
+        findings_before(*load_model_text("gravity = " + std::string(gravity) + "\n" + body, "scene.toml"));
+    const Finding* const finding = found(findings, "implausible_gravity");
+    CHECK((finding != nullptr) == is_found);
+    if (finding) CHECK(caps_verdict(*finding));
+  }
+}
+
 TEST_CASE("every kind with a coefficient of friction can say where it comes from, but tyres and sheets") {
   // Treads of tyres grip with more than 1; sheets of cores have ranges of their own.
   const std::set<std::string> exempt = {"tyre", "step_lap_interface"};

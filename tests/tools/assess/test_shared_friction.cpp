@@ -114,6 +114,23 @@ TEST_CASE("0.2 g along and across holds at 0.943, and says so") {
   CHECK(std::any_of(a.reasons.begin(), a.reasons.end(), [](const Reason& r) { return r.text.find("at most 94.") != std::string::npos; }));
 }
 
+TEST_CASE("friction of different names in two planes is open until somebody takes the responsibility") {
+  Machine machine;
+  for (std::size_t at = 0; (at = machine.across.find("beams", at)) != std::string::npos; at += 6) machine.across.replace(at, 5, "planks");
+  AssessmentOptions options = options_of();
+  const auto gentle = [](double t) { return pulled_smoothly(t, 0.2, 0.2); };
+  CHECK(machine.assessed(gentle, options).decision == Decision::energise); // all evidence is accepted
+  options.accepted.clear();
+  const Assessment a = machine.assessed(gentle, options);
+  CHECK(std::any_of(a.missing.begin(), a.missing.end(), [](const MissingEvidence& m) {
+    return m.item == Evidence::planes && m.reason.find("'beams' of") != std::string::npos &&
+           m.reason.find("'planks' of") != std::string::npos;
+  }));
+  CHECK(a.decision == Decision::open);
+  const Assessment same = Machine().assessed(gentle, options);
+  CHECK(std::none_of(same.missing.begin(), same.missing.end(), [](const MissingEvidence& m) { return m.item == Evidence::planes; }));
+}
+
 TEST_CASE("mirrored, and with the axes of the record exchanged, it slides the same way") {
   const Machine machine;
   const AssessmentOptions options = options_of();

@@ -157,6 +157,10 @@ TEST_CASE("criteria that do not apply to a case neither judge it nor stand in it
   CHECK(found["cases"][1]["verdict"] == "hold"); // it sags by 1.96 mm of 10 mm
   CHECK(found["cases"][1]["limits"].size() == 1);
   CHECK(found["cases"][1]["limits"][0]["limit"] == "sag");
+  // A criterion of no case is named.
+  const Json one = cases_of(bench.write("one.toml", k_hanging + load_case("sag", down + "criteria = [\"s*\"]")));
+  CHECK(has(one["reason"].get<std::string>(), "Judged in no case: 'force'."));
+  CHECK_FALSE(has(found["reason"].get<std::string>(), "Judged in no case"));
 }
 
 TEST_CASE("exit codes are those of simulate") {

@@ -106,6 +106,31 @@ TEST_CASE("an event of a record has its peak and its velocity, and ends at rest 
   CHECK(kept < 0.95 * peak);
 }
 
+TEST_CASE("a record that is clipped or ends within an event leaves a doubt") {
+  // A half-sine of 2 g, 0.1 s long, at 0.5 s, in steps of 0.01 g; clipped at 1 g; or without what follows its peak.
+  const auto record = [](double most, double end) {
+    std::string text = "time [s],x [g]\n";
+    for (int i = 0; i <= 1000; ++i) {
+      const double t = 0.001 * i, pulse = t > 0.5 && t < 0.6 ? 2.0 * std::sin(10.0 * std::numbers::pi * (t - 0.5)) : 0.01 * (i % 2);
+      if (t > end) break;
+      char row[64];
+      std::snprintf(row, sizeof row, "%.3f,%.2f\n", t, std::min(most, pulse));
+      text += row;
+    }
+    return text;
+  };
+  const auto doubts = [](const RecordOnDisk& file, double from) {
+    std::string all;
+    for (const Signal::Doubt& doubt : made(file, {{"axis", text("x")}, {"from", from}}).doubts()) all += doubt.text + ". ";
+    return all;
+  };
+  const RecordOnDisk whole("whole.csv", record(10.0, 1.0)), clipped("clipped.csv", record(1.0, 1.0)), cut("cut.csv", record(10.0, 0.55));
+  CHECK(doubts(whole, 0.0) == "");
+  CHECK(doubts(clipped, 0.0).find("axis x stays at 1 g") != std::string::npos);
+  CHECK(doubts(clipped, 0.7) == ""); // the window begins after the pulse
+  CHECK(doubts(cut, 0.0).find("ends at 100 % of its largest value") != std::string::npos);
+}
+
 TEST_CASE("what a record leaves open is asked for") {
   const RecordOnDisk plain("plain2.csv", k_plain), counts("counts.csv", make_record("gcdc")), peaks("peaks.csv", make_record("shocklog"));
   std::string parted = k_plain;
