@@ -30,6 +30,7 @@ VoyageSummary summary_of(const Passage& passage, std::size_t number, const std::
   const std::string where = "event " + std::to_string(number) + " of '" + model + "': ";
   if (!passage.is_made) s.unknown = where + passage.reason;
   else if (!passage.is_trusted) s.unknown = where + passage.trust;
+  else if (!passage.still_grows.empty()) s.unknown = where + passage.still_grows;
   for (const JointPassage& joint : passage.joints) {
     if (std::isnan(joint.margin)) s.unknown = where + "the margin of '" + joint.name + "' is not known.";
     s.least_margin = std::min(s.least_margin, joint.margin);

@@ -3,8 +3,8 @@
 namespace steplap::assess {
 
 const char* name_of(Evidence item) {
-  static constexpr const char* k_names[] = {"clipped", "gaps", "peaks",    "cut",   "comments",  "fall",  "dead",
-                                            "unit",    "axis", "coverage", "clock", "bandwidth", "place", "vibration", "planes"};
+  static constexpr const char* k_names[] = {"clipped", "gaps",     "peaks", "cut",       "comments", "fall",      "dead",  "unit",
+                                            "axis",    "coverage", "clock", "bandwidth", "place",    "vibration", "planes"};
   return k_names[static_cast<int>(item)];
 }
 

@@ -141,6 +141,8 @@ void VoyageModel::look(const Report& report, Passage& passage) {
   }
   for (const Finding& finding : report.findings)
     if (finding.level == FindingLevel::warning && !is_of_replaced(finding)) passage.findings.push_back(text_with_place(finding));
+  for (const Finding& finding : report.findings)
+    if (finding.code == "criterion_still_grows") passage.still_grows = finding.text + " ('settle' of [[recorder]]).";
   if (!report.judgement.distrust.empty()) passage.findings.push_back(report.judgement.distrust);
   for (const std::string& cap : report.judgement.caps)
     if (std::find(passage.findings.begin(), passage.findings.end(), cap) == passage.findings.end()) passage.findings.push_back(cap);
@@ -162,6 +164,7 @@ Passage VoyageModel::pass(const DriveHistory& history, Estimating estimating) {
     Passage passage;
     passage.is_made = true;
     look(report, passage);
+    if (history.goes_on) passage.still_grows.clear(); // the next event continues this one
     if (!model_.traced.empty())
       passage.traces = friction_traces(loaded->model, *loaded->system, report.run.result, model_.traced, 0.0, model.output.step);
     if (!report.run.result.stop_reason.empty()) ended_ = report.run.result.stop_reason;

@@ -65,6 +65,7 @@ struct Passage {
   std::vector<std::string> findings;
   std::optional<double> worst_instant; ///< time at which a utilisation is largest, s after the begin of the event
   std::vector<BodyPose> poses;         ///< poses of the bodies at the output sample nearest to that time; empty if there is none
+  std::string still_grows;             ///< why a criterion that is met may not be after the event; "" if no criterion grows on
   double final_speed = 0.0;            ///< largest speed of a body relative to the tank at the end of the event, m/s
   std::vector<SampledFriction> traces; ///< friction histories of the elements in DrivenModel::traced
 };

@@ -109,6 +109,21 @@ TEST_CASE("a block on the driven tank slides as Newmark's sliding block does") {
   CHECK(std::abs(final_value(driven(block_text(0.61)), pulse, "floor.slide")) < 1e-12);
 }
 
+TEST_CASE("an event that ends while the block slides towards its limit is not decided") {
+  // A triangle of 0.6 g and 0.1 s leaves 0.27 m/s, which friction of 0.02 g stops after some 0.2 m: 1.4 s, and 'settle' is 0.3 s.
+  const DriveHistory pulse = triangles({0.6 * 9.81}, 0.1, 0.0);
+  const auto passed = [&](double within, const DriveHistory& history) {
+    const DrivenModel model =
+        driven(block_text(0.02, "[[acceptance]]\nname = \"stays\"\nchannel = \"floor.slide\"\nwithin = " + std::to_string(within) + "\n"));
+    return VoyageModel(model).pass(history, Estimating::never);
+  };
+  CHECK(passed(0.15, pulse).still_grows.find("'stays' is met so far") == 0);
+  CHECK(passed(0.5, pulse).still_grows == "");
+  DriveHistory goes_on = pulse;
+  goes_on.goes_on = true;
+  CHECK(passed(0.15, goes_on).still_grows == ""); // the next event shows it
+}
+
 TEST_CASE("what else drives the recorder's body is refused, unless the record takes its place") {
   const std::string brake = "[[signal]]\nname = \"brake\"\nkind = \"haversine\"\npeak = -5.0\nduration = 0.1\n[[element]]\nkind = "
                             "\"prescribed_motion\"\nname = \"brake\"\na = \"tank\"\nsignal = \"brake\"\n";
