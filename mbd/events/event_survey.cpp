@@ -271,7 +271,21 @@ EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynam
       high_ = low_;
       return Bracket::immediate;
     }
-    if (survey_interval(integrator, dynamics, interval)) {
+    const bool is_bracket = survey_interval(integrator, dynamics, interval);
+    // A function that is not armed and falls from below zero at k_arming_theta shows the same, even if it is positive again later.
+    if (parts == 0 && interval.begin == k_arming_theta) {
+      fired_before_.clear();
+      std::copy_if(every_slot.begin(), every_slot.end(), std::back_inserter(fired_before_), [this](int slot) {
+        const double start = nodes_[0].event_value[slot];
+        return armed_before_[slot] == 0 && start < -tolerance_[slot] && nodes_[1].event_value[slot] < start;
+      });
+      if (!fired_before_.empty()) {
+        std::swap(fired_, fired_before_);
+        high_.theta = k_arming_theta;
+        return Bracket::immediate;
+      }
+    }
+    if (is_bracket) {
       const bool is_any_late = low_.theta >= k_arming_theta && std::any_of(every_slot.begin(), every_slot.end(), was_never_positive);
       if (!is_any_late) return classify_bracket();
       break;

@@ -7,10 +7,10 @@
 #include "mbd/model/action.h"
 #include "mbd/model/formula_fields.h"
 #include "mbd/model/signal_network.h"
+#include "mbd/run/channel_owners.h"
 #include "mbd/run/limited_channels.h"
 #include "mbd/run/quantity_text.h"
 #include "mbd/run/range_index.h"
-#include "mbd/system/places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,20 +70,20 @@ public:
     for (const ElementEntry& entry : model.elements) {
       if (!slips_at_end(ranges, entry.element->name)) continue;
       owners_.insert(entry.element->name);
-      for (const std::string& body : bodies_of(entry)) owners_.insert(body);
+      for (const std::string& body : bodies_of(model_, entry)) owners_.insert(body);
     }
   }
   /// Returns true if the channel, or one that its formula names, belongs to an element that slips or to one of its bodies.
   [[nodiscard]] bool moves(const std::string& channel) const {
-    const auto owners = owners_of(channel);
+    const auto owners = owners_of(model_, channel);
     return std::any_of(owners.begin(), owners.end(), [this](const std::string& owner) { return owners_.count(owner) > 0; });
   }
   /// Returns true if a criterion limits a place of the element's bodies.
   [[nodiscard]] bool is_limited(const ElementEntry& entry) const {
-    const std::vector<std::string> bodies = bodies_of(entry);
+    const std::vector<std::string> bodies = bodies_of(model_, entry);
     return std::any_of(model_.criteria.begin(), model_.criteria.end(), [&](const Criterion& criterion) {
       if (!criterion.event.empty() || !is_formula(criterion.channel)) return false;
-      const auto owners = owners_of(criterion.channel);
+      const auto owners = owners_of(model_, criterion.channel);
       return std::any_of(bodies.begin(), bodies.end(), [&](const std::string& body) { return owners.count(body) > 0; });
     });
   }
@@ -92,32 +92,6 @@ private:
   [[nodiscard]] bool is_formula(const std::string& channel) const {
     return std::any_of(model_.channels.begin(), model_.channels.end(), [&](const DefinedChannel& d) { return d.name == channel; });
   }
-  // Returns the bodies and elements whose channels the channel is or uses.
-  [[nodiscard]] std::set<std::string> owners_of(const std::string& channel) const {
-    std::set<std::string> owners, seen{channel};
-    std::vector<std::string> names{channel};
-    while (!names.empty()) {
-      const std::string name = std::move(names.back());
-      names.pop_back();
-      owners.insert(name.substr(0, name.rfind('.')));
-      for (const DefinedChannel& defined : model_.channels)
-        if (defined.name == name)
-          for (const std::string& each : Formula(defined.expression, "", {}).names())
-            if (seen.insert(each).second) names.push_back(each);
-    }
-    return owners;
-  }
-  [[nodiscard]] std::vector<std::string> bodies_of(const ElementEntry& entry) const {
-    std::vector<std::string> bodies;
-    for (const Field& field : entry.kind->fields.fields())
-      if (field.type == FieldType::marker || field.type == FieldType::body) {
-        const auto name = std::get<std::string>(field.get(entry.element.get()));
-        const Body* const body = name.empty() ? nullptr : place_of(model_, name).body;
-        if (body && !body->fixed) bodies.push_back(body->name);
-      }
-    return bodies;
-  }
-
   const Model& model_;
   std::unordered_set<std::string> owners_;
 };

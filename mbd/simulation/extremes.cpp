@@ -385,7 +385,8 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
   const double slack = tolerance(c);
   const ChannelRange& r = range(c);
   // curve_[c].error is the deviation of the polynomial of half the degree at the new nodes. For a smooth curve, doubling the number of
-  // nodes squares the relative error.
+  // nodes squares the relative error; at a kink it halves the error.
+  constexpr double k_faster_than_at_kink = 0.25;
   NodePolynomial::Values v;
   const std::vector<double>* row = node_.data();
   double least = (*row)[c], most = least, sum = 0.0;
@@ -396,7 +397,8 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
     sum += v[i];
   }
   const double spread = most - least;
-  const double error = level > 1 && spread > 0.0 ? curve_[c].error * std::min(1.0, curve_[c].error / spread) : curve_[c].error;
+  const bool is_smooth = level > 1 && spread > 0.0 && curve_[c].error <= k_faster_than_at_kink * curve_[c].earlier_error;
+  const double error = is_smooth ? curve_[c].error * std::min(1.0, curve_[c].error / spread) : curve_[c].error;
   for (const double sign : {1.0, -1.0}) {
     const double record = sign > 0.0 ? r.high.value : -r.low.value, best = sign > 0.0 ? most : -least;
     if (!std::isfinite(best)) continue;
@@ -447,7 +449,10 @@ void ExtremeFinder::check_tops(int level, Integrator& integrator, Dynamics& dyna
 
 void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics) {
   const int step = NodePolynomial::spacing(level);
-  for (const std::size_t c : open_) curve_[c].error = level == 1 && h_last_ == 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+  for (const std::size_t c : open_) {
+    curve_[c].earlier_error = level == 1 ? std::numeric_limits<double>::infinity() : curve_[c].error;
+    curve_[c].error = level == 1 && h_last_ == 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+  }
   for (int i = step; i < k_last; i += 2 * step) {
     const double theta = NodePolynomial::theta(i);
     const Snapshot snapshot = evaluate_dense(theta, integrator, dynamics);

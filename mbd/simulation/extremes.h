@@ -106,6 +106,7 @@ private:
   struct ChannelSearchState {
     bool is_open = false; ///< the search for an extreme is not finished
     double error = 0.0;   ///< error of the polynomial through the nodes, in the unit of the channel
+    double earlier_error = std::numeric_limits<double>::infinity(); ///< error with half as many nodes
   };
   struct Kind {                        ///< data common to channels with the same unit
     const std::string* unit = nullptr; ///< never nullptr

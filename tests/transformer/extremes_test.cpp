@@ -1,9 +1,11 @@
 // Verdicts and extremes do not hang on what is written, nor how often: every model of models/, and exact extremes of
 // motions that are known.
+#include "mbd/base/number_text.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/trust/judge.h"
+#include "tests/random/random_number.h"
 #include "tests/sanitized.h"
 #include "tests/transformer/swing.h"
 #include "transformer/catalog.h"
@@ -13,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 using namespace steplap;
 
@@ -158,6 +161,44 @@ force_x = "wave"
 )");
   CHECK(run.range("hold.force_x").low.value == doctest::Approx(-5.0).epsilon(1e-6));
   CHECK(run.range("hold.force_x").high.value == doctest::Approx(-1.0).epsilon(1e-6));
+}
+
+TEST_CASE("the least reaction of a pin is found where one component passes zero, within a step of a body at rest") {
+  // R = |(x(t), y(t) − m g)|: where x passes zero, R has a kink that is as narrow as y − m g is small.
+  random::RandomNumber random(5);
+  for (int n = 0; n < 40; ++n) {
+    struct Pulse {
+      double peak, start, duration;
+      [[nodiscard]] double at(double t) const {
+        return t > start && t < start + duration ? peak * std::sin(std::numbers::pi * (t - start) / duration) : 0.0;
+      }
+    };
+    const Pulse first{random.between(50.0, 150.0), 0.0, random.between(1.0, 3.0)};
+    const Pulse second{-random.between(100.0, 300.0), random.between(0.2, 1.5), random.between(0.3, 1.0)};
+    const double weight = random.between(1.0, 10.0);
+    const auto signal = [](const char* name, const Pulse& p) {
+      return "[[signal]]\nname = \"" + std::string(name) + "\"\nkind = \"half_sine\"\npeak = " + number_text(p.peak) +
+             "\nstart = " + number_text(p.start) + "\nduration = " + number_text(p.duration) + "\n";
+    };
+    const Ran ran =
+        run_text("gravity = [0.0, " + number_text(-weight) + "]\n[simulation]\nend = 4.0\n[output]\nalso = [\"pin.reaction\"]\n" +
+                 "[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 1.0\n[[element]]\nkind = \"revolute\"\nname = \"pin\"\na = "
+                 "\"b\"\n" +
+                 signal("s", first) + signal("s2", second) +
+                 "[[signal]]\nname = \"x\"\nkind = \"sum\"\nsignals = [\"s\", \"s2\"]\n[[element]]\nkind = \"load\"\nname = "
+                 "\"push\"\nat = \"b\"\nforce_x = \"x\"\n");
+    double least = weight, most = weight;
+    constexpr int k_samples = 400000; // 1e-5 s apart: within 1e-5 s · 1000 N/s of the least, where its square is flat
+    for (int i = 0; i <= k_samples; ++i) {
+      const double t = 4.0 * i / k_samples, x = first.at(t) + second.at(t), r = std::hypot(x, weight);
+      least = std::min(least, r);
+      most = std::max(most, r);
+    }
+    const ChannelRange& found = ran.range("pin.reaction");
+    CAPTURE(n);
+    CHECK(std::abs(found.low.value - least) < 1e-5 * most);
+    CHECK(std::abs(found.high.value - most) < 1e-5 * most);
+  }
 }
 
 TEST_CASE("a knock shorter than the output step counts") {
