@@ -107,18 +107,15 @@ Terms product(const Terms& a, const Terms& b) {
   return result;
 }
 
-// Returns the starts of all pieces in ascending order, without times that differ only by rounding. Constant signals add only t = 0, and
-// only if no other signal begins before.
+// Returns the starts of all pieces in ascending order, without times that differ only by rounding. Constant signals begin at t = 0.
 std::vector<double> starts_of(const std::vector<const Signal*>& parts) {
   std::vector<double> times;
-  bool has_constant = false;
   for (const Signal* part : parts) {
-    has_constant = has_constant || part->is_constant();
-    if (!part->is_constant())
+    if (part->is_constant()) times.push_back(0.0);
+    else
       for (const Signal::Piece& piece : part->pieces()) times.push_back(piece.start);
   }
   std::sort(times.begin(), times.end());
-  if (has_constant && (times.empty() || times.front() > 0.0)) times.insert(times.begin(), 0.0);
   const auto is_same = [](double a, double b) { return b - a <= k_same_time * std::abs(b); };
   times.erase(std::unique(times.begin(), times.end(), is_same), times.end());
   return times;
@@ -132,7 +129,7 @@ public:
   Terms at(double t) {
     const std::vector<Signal::Piece>& pieces = signal_.pieces();
     if (pieces.empty()) return {};
-    if (signal_.is_constant()) return terms_of(pieces.front(), pieces.front().start);
+    if (signal_.is_constant()) return t < 0.0 ? Terms{} : terms_of(pieces.front(), pieces.front().start);
     while (next_ < pieces.size() && pieces[next_].start - t <= k_same_time * std::abs(t)) ++next_;
     return next_ > 0 ? terms_of(pieces[next_ - 1], t) : Terms{};
   }

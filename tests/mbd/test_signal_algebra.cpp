@@ -177,6 +177,12 @@ TEST_CASE("a delayed signal is the same later, and a constant sum of constants s
   CHECK(product_of({&two, &two}).is_constant());
 }
 
+TEST_CASE("a constant begins at t = 0 also next to a signal that begins before, and its delay counts from there") {
+  const Signal early = haversine(1e-9, -0.05, 0.1), one = Signal::constant(1.0), later = delayed(sum_of({&early, &one}, {1.0, 1.0}), 0.2);
+  CHECK(std::abs(later.value(0.19)) < 1e-8);
+  CHECK(std::abs(later.value(0.21) - 1.0) < 1e-8);
+}
+
 TEST_CASE("a product that would grow beyond bounds is refused") {
   const Signal slope({Piece{0.0, {1.0, 1.0, 0, 0}, {}, {}}});
   std::vector<Signal> waves; // products have 2¹⁴ sums and differences of their frequencies

@@ -345,7 +345,7 @@ TEST_CASE("a criterion that no load reaches is open: nothing that it depends on 
     for (std::size_t at = 0; (at = text.find("HOST", at)) != std::string::npos;) text.replace(at, 4, host);
     return run_of(text + "[[element]]\nname = \"l\"\n" + load);
   };
-  const std::string drive = "kind = \"prescribed_motion\"\na = \"deck\"\nlevel = \"acceleration\"\nsignal = \"p\"\n";
+  const std::string drive = "kind = \"prescribed_motion\"\na = \"deck\"\nas = \"acceleration\"\nsignal = \"p\"\n";
   const Report ground = on("ground", drive);
   CHECK(ground.judgement.verdict == Verdict::open);
   CHECK(has(ground, "criterion_not_reached"));
