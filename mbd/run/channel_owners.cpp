@@ -19,7 +19,8 @@ std::set<std::string> owners_of(const Model& model, const std::string& channel) 
     for (const DefinedChannel& defined : model.channels) {
       if (defined.name != name) continue;
       is_formula = true;
-      for (const std::string& each : Formula(defined.expression, "", {}).names())
+      const Formula formula(defined.expression, "", {});
+      for (const std::string& each : formula.names())
         if (seen.insert(each).second) names.push_back(each);
     }
     if (!is_formula) owners.insert(owner_of(name));
