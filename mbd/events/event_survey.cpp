@@ -273,7 +273,7 @@ EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynam
     }
     const bool is_bracket = survey_interval(integrator, dynamics, interval);
     // A function that is not armed and falls from below zero at k_arming_theta shows the same, even if it is positive again later.
-    if (parts == 0 && interval.begin == k_arming_theta) {
+    if (interval.begin == k_arming_theta && interval.end == 1.0) {
       fired_before_.clear();
       std::copy_if(every_slot.begin(), every_slot.end(), std::back_inserter(fired_before_), [this](int slot) {
         const double start = nodes_[0].event_value[slot];
