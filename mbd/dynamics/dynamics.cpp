@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 namespace steplap {
 
@@ -37,7 +36,7 @@ void Dynamics::set_state(const State& state) {
   evaluation_.friction = state.friction.data();
   evaluation_.bases = state.bases.data();
   is_merged_near_ = was_merged_near_ = false;
-  reached_ = Reached::nothing;
+  pending_.end();
   stage_programs_.leave();
   std::fill(arrays_.event_value.begin(), arrays_.event_value.end(), 1.0);
   std::fill(arrays_.force.begin(), arrays_.force.end(), BodyForce{}); // so that bodies on which nothing acts have zero force
@@ -54,7 +53,7 @@ void Dynamics::set_state(const State& state) {
     pack(system_.initial_state(), packed.data());
     layout_->reference.assign(packed.begin(), packed.begin() + coordinate_count());
     if (projected_state_.size() < packed.size()) projected_state_.resize(packed.size());
-    stored_.reserve(packed.size());
+    pending_.reserve(packed.size());
     if (row_scratch_.size() < layout_->active.size()) row_scratch_.resize(layout_->active.size());
   }
   if (layout_->has_mechanisms()) cluster_a_.resize(3 * layout_->clusters.size());
@@ -122,14 +121,14 @@ void Dynamics::apply_forces() {
 void Dynamics::finish_power(const double* a) {
   const Layout& layout = *layout_;
   add_power_of_drives(
-      layout, arrays_.force.data(), layout.schur_rows.data(), rows_.multipliers().data(), a,
+      layout, arrays_.force.data(), layout.schur_rows.data(), multipliers().data(), a,
       [&](std::size_t i) { return rows_.target_rates()[layout.driven_rows[i]]; },
       [this](std::size_t i) -> const SignalJet& { return kinematics_.lock_target(i); }, evaluation_.work);
 }
 
 void Dynamics::finish_events() {
   const Layout& layout = *layout_;
-  for (const HeldRow& held : layout.held_rows) friction_force_[held.friction_row] = rows_.multipliers()[held.row];
+  for (const HeldRow& held : layout.held_rows) friction_force_[held.friction_row] = multipliers()[held.row];
   if (layout.is_singular() && (!layout.sharing || is_rank_new_)) [[unlikely]] {
     find_sharing();
     is_rank_new_ = false;
@@ -179,13 +178,12 @@ STEPLAP_INLINE void Dynamics::finish_rates(const double* y, double* dy) {
   std::copy_n(y + 2 * n + inner_count(), 2, energy_integrals_);
   power[0] = evaluation_.dissipation;
   power[1] = evaluation_.work;
-  reached_ = Reached::everything;
 }
 
 STEPLAP_INLINE void Dynamics::begin_rates(double t, const double* y, double* dy) {
   const int n = coordinate_count();
   ++evaluations_;
-  reached_ = Reached::nothing;
+  pending_.end();
   evaluation_.t = t;
   evaluation_.dissipation = 0.0;
   evaluation_.work = 0.0;
@@ -249,7 +247,7 @@ bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
   if (!program->run(now, y, dy + coordinate_count(), arrays_.event_value.data(), arrays_.event_derivative.data(), all)) return false;
   ++evaluations_;
   ++coded_stages_;
-  reached_ = Reached::events;
+  pending_.end();
   rows_.forget_factors();
   put_place_rates(y, dy);
   return true;
@@ -257,7 +255,6 @@ bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
 
 void Dynamics::evaluate_stage(double t, const double* y, double* dy) {
   if (!run_code(t, y, dy, false)) evaluate_stage_without_code(t, y, dy);
-  reached_ = Reached::events;
 }
 
 void Dynamics::evaluate_stage_without_code(double t, const double* y, double* dy) {
@@ -326,28 +323,18 @@ void Dynamics::count_stage(double t, const double* y, const double* dy) {
 }
 
 void Dynamics::defer_byproducts(const StageProgram& program, double t, const double* y) {
-  stored_.set(std::min(t, time_cap_), y, dimension(), program.smallest_pivot());
-  reached_ = Reached::arguments;
+  pending_.begin(std::min(t, time_cap_), y, dimension(), program.smallest_pivot());
 }
 
-// Computes deferred by-products. Not counted in evaluations(), which must not depend on the use of code.
-void Dynamics::finish_deferred() {
-  if (reached_ != Reached::arguments) return;
+// Computes the pending by-products. Not counted in evaluations(), which must not depend on the use of code.
+void Dynamics::evaluate_byproducts() {
   --evaluations_;
-  rates_at(stored_.t(), stored_.y(), stored_.dy());
-}
-
-void Dynamics::reach_byproducts() {
-  finish_deferred();
-  if (reached_ != Reached::everything) throw std::logic_error("results of an evaluation are used before it or after a change of state");
+  rates_at(pending_.t(), pending_.y(), pending_.dy());
 }
 
 double Dynamics::mechanical_energy(double t, const double* y) {
   t = std::min(t, time_cap_);
-  if (!kinematics_.is_placed(t, y)) {
-    kinematics_.place(t, y, y + coordinate_count());
-    leave_evaluation();
-  }
+  if (!kinematics_.is_placed(t, y)) kinematics_.place(t, y, y + coordinate_count());
   double kinetic = 0.0, potential = 0.0;
   for (const Cluster& c : layout_->clusters) {
     const Motion<double>& m = motion_[c.motion];
@@ -375,7 +362,7 @@ bool Dynamics::has_groups() const { return !sharing()->groups().empty(); }
 
 // Computes the event functions of merged joints and of load-sharing groups. Returns true if one of them is near its limit.
 bool Dynamics::evaluate_joint_events(const double* dy) {
-  require_byproducts();
+  ensure_byproducts();
   kinematics_.complete();
   const double* const cluster_a = cluster_accelerations(dy);
   if (layout_->sharing) {
@@ -402,7 +389,7 @@ bool Dynamics::evaluate_wrench_events() {
 
 Snapshot Dynamics::snapshot(const double* dy) {
   const Layout& layout = *layout_;
-  require_byproducts();
+  ensure_byproducts();
   kinematics_.complete();
   if (layout.sharing) store_solved_friction();
   const double* const cluster_a = cluster_accelerations(dy);

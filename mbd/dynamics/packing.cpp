@@ -105,7 +105,7 @@ const double* Dynamics::cluster_rates(const double* y) {
 const double* Dynamics::cluster_accelerations(const double* dy) {
   const double* const a = dy + coordinate_count();
   if (!layout_->has_mechanisms()) return a;
-  require_byproducts();
+  ensure_byproducts();
   std::copy_n(a, 3 * layout_->absolute_count, cluster_a_.begin());
   for (const Mechanism& m : layout_->mechanisms) m.expand(a + m.first_coordinate, cluster_a_.data());
   return cluster_a_.data();

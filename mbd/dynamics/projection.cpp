@@ -60,14 +60,13 @@ Residual Dynamics::constraint_values(double t, const double* y) {
   t = std::min(t, time_cap_);
   evaluation_.t = t;
   kinematics_.place(t, y, y + coordinate_count());
-  leave_evaluation();
   rows_.compare(t);
   return rows_.residual();
 }
 
 Residual Dynamics::residual(double t, const double* y) {
   if (layout_->active.empty()) return {};
-  reached_ = Reached::nothing;
+  pending_.end(); // by-products are invalid from now on
   rows_.forget_factors();
   return constraint_values(t, y);
 }
@@ -104,7 +103,7 @@ bool Dynamics::is_near_singular() const {
 void Dynamics::project_onto_null_space(double* change) {
   const Layout& layout = *layout_;
   if (layout.active.empty()) return;
-  finish_deferred();
+  ensure_byproducts();
   if (!rows_.is_factored()) rows_.factor();
   for (std::size_t r = 0; r < layout.active.size(); ++r) row_scratch_[r] = rows_.along(r, change);
   rows_.take_away(row_scratch_.data(), change);
@@ -125,10 +124,7 @@ Residual Dynamics::project(double t, double* y, double tolerance) {
 void Dynamics::project_inner(double t, double* y) {
   double* const inner = y + 2 * coordinate_count();
   evaluation_.t = std::min(t, time_cap_);
-  if (!kinematics_.is_placed(evaluation_.t, y)) {
-    kinematics_.place(evaluation_.t, y, y + coordinate_count());
-    leave_evaluation();
-  }
+  if (!kinematics_.is_placed(evaluation_.t, y)) kinematics_.place(evaluation_.t, y, y + coordinate_count());
   take_inner(inner);
   for (const ForceGroup* group : system_.inner_groups) inner[inner_count()] += group->project_inner(evaluation_, inner);
   take_inner(inner);
@@ -137,7 +133,7 @@ void Dynamics::project_inner(double t, double* y) {
 Residual Dynamics::project_rows(double t, double* y, double tolerance) {
   const Layout& layout = *layout_;
   const int n = coordinate_count();
-  if (!layout.active.empty()) finish_deferred(); // the projection starts with the factors of the last evaluation
+  if (!layout.active.empty()) ensure_byproducts(); // the projection starts with the factors of the last evaluation
   kinematics_.aim_locks(std::min(t, time_cap_));
   for (std::size_t i = 0; i < layout.locks.size(); ++i) {
     const int k = 3 * layout.locks[i].cluster + layout.locks[i].coordinate;
@@ -159,7 +155,7 @@ Residual Dynamics::project_rows(double t, double* y, double tolerance) {
 
 void Dynamics::project_velocities(double t, double* y) {
   if (!layout_->active.empty()) {
-    finish_deferred();
+    ensure_byproducts();
     const Residual now = constraint_values(t, y);
     reach_velocities(t, y, now, k_close * rate_rounding(y));
   }

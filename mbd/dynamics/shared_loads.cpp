@@ -10,8 +10,7 @@ namespace steplap {
 // Computes the null vectors at the present pose, unless the known ones are still valid.
 void Dynamics::find_sharing() {
   Layout& layout = *layout_;
-  kinematics_.complete();
-  const std::vector<Motion<double>>& all = kinematics_.motion();
+  const std::vector<Motion<double>>& all = motion();
   std::vector<char> left_out(system_.friction_row_count, 0);
   for (const HeldRow& held : layout.held_rows) left_out[held.friction_row] = layout.is_dependent(held.row) ? 1 : 0;
   if (layout.sharing && layout.sharing->holds_at(all, left_out)) return;
@@ -21,8 +20,8 @@ void Dynamics::find_sharing() {
 
 const LoadSharing* Dynamics::sharing_now() const {
   const Layout& layout = *layout_;
-  // Deferred by-products belong to an evaluation by code, which is used only if no rows depend on each other.
-  return reached_ != Reached::arguments && layout.is_singular() ? layout.sharing.get() : nullptr;
+  // Pending by-products belong to an evaluation by code, which is used only if no rows depend on each other.
+  return !pending_.is_pending() && layout.is_singular() ? layout.sharing.get() : nullptr;
 }
 
 bool Dynamics::is_shared(int friction) const {

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 using namespace steplap;
 using namespace steplap::testing;
@@ -83,29 +82,6 @@ TEST_CASE("multipliers are those of the last evaluation, whatever is projected o
   e.dynamics.rates(0.0, e.y.data(), e.dy.data());
   e.dynamics.compute_mode_problem(candidates, e.dy.data());
   CHECK(e.dynamics.multipliers() == lambda);
-}
-
-TEST_CASE("results of another state than that of the last evaluation are refused") {
-  EvaluatedScene e(k_pendulum);
-  std::vector<double> off = e.y;
-  off[0] += 1e-3;
-  e.dynamics.project(0.0, off.data(), 1e-12);
-  CHECK(e.dynamics.motion()[1].x == off[0]); // the place of the projection
-  CHECK_THROWS_AS((void)e.dynamics.evaluation(), std::logic_error);
-  CHECK_THROWS_AS((void)e.dynamics.snapshot(e.dy.data()), std::logic_error);
-  e.dynamics.rates(0.0, off.data(), e.dy.data());
-  CHECK(e.dynamics.evaluation().motion[1].x == off[0]);
-  (void)e.dynamics.mechanical_energy(0.0, e.y.data());
-  CHECK_THROWS_AS((void)e.dynamics.evaluation(), std::logic_error);
-  (void)e.dynamics.residual(0.0, e.y.data());
-  CHECK(e.dynamics.motion()[1].x == e.y[0]);
-  CHECK_THROWS_AS((void)e.dynamics.multipliers(), std::logic_error);
-  e.dynamics.evaluate(Request::stage, 0.0, e.y.data(), e.dy.data());
-  CHECK_THROWS_AS((void)e.dynamics.multipliers(), std::logic_error);
-  e.dynamics.evaluate(Request::end, 0.0, e.y.data(), e.dy.data());
-  CHECK(e.dynamics.multipliers().size() == 2);
-  e.dynamics.set_state(e.state);
-  CHECK_THROWS_AS((void)e.dynamics.motion(), std::logic_error);
 }
 
 TEST_CASE("every body is where it moves to and accelerates as its neighbours let it, also those that no force acts on") {
