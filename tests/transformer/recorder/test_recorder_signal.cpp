@@ -121,7 +121,8 @@ TEST_CASE("a record that is clipped or ends within an event leaves a doubt") {
   };
   const auto doubts = [](const RecordOnDisk& file, double from) {
     std::string all;
-    for (const Signal::Doubt& doubt : made(file, {{"axis", text("x")}, {"from", from}}).doubts()) all += doubt.text + ". ";
+    const Signal signal = made(file, {{"axis", text("x")}, {"from", from}});
+    for (const Signal::Doubt& doubt : signal.doubts()) all += doubt.text + ". ";
     return all;
   };
   const RecordOnDisk whole("whole.csv", record(10.0, 1.0)), clipped("clipped.csv", record(1.0, 1.0)), cut("cut.csv", record(10.0, 0.55));
