@@ -78,11 +78,13 @@ public:
     const auto owners = owners_of(model_, channel);
     return std::any_of(owners.begin(), owners.end(), [this](const std::string& owner) { return owners_.count(owner) > 0; });
   }
-  /// Returns true if a criterion limits a place of the element's bodies.
+  /// Returns true if a criterion limits a coordinate of the element's bodies, or a formula of their channels.
   [[nodiscard]] bool is_limited(const ElementEntry& entry) const {
     const std::vector<std::string> bodies = bodies_of(model_, entry);
     return std::any_of(model_.criteria.begin(), model_.criteria.end(), [&](const Criterion& criterion) {
-      if (!criterion.event.empty() || !is_formula(criterion.channel)) return false;
+      const auto ends_it = [&](const char* coordinate) { return criterion.channel.ends_with(coordinate); };
+      const bool is_coordinate = ends_it(".x") || ends_it(".y") || ends_it(".theta");
+      if (!criterion.event.empty() || (!is_coordinate && !is_formula(criterion.channel))) return false;
       const auto owners = owners_of(model_, criterion.channel);
       return std::any_of(bodies.begin(), bodies.end(), [&](const std::string& body) { return owners.count(body) > 0; });
     });
