@@ -123,8 +123,8 @@ private:
     std::vector<std::string> known;
     for (const Channel* channel : all_.channels()) known.push_back(channel->name);
     if (const std::string on_request = name_on_request(pattern); !on_request.empty())
-      problems_.push_back({where, subject + ": '" + on_request + "' is computed on request only: add also = [\"" + on_request +
-                                      "\"] to [output]"});
+      problems_.push_back(
+          {where, subject + ": '" + on_request + "' is computed on request only: add also = [\"" + on_request + "\"] to [output]"});
     else problems_.push_back({where, subject + ": no channel matches '" + pattern + "'" + did_you_mean(pattern, known)});
     return channels;
   }

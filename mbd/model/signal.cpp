@@ -482,9 +482,9 @@ std::optional<Signal::Jump> Signal::first_jump(DriveLevel level, double from, do
 void Signal::doubt_cut_end() {
   constexpr double k_much = 0.2; // of the largest value; what rattles after an event stays below
   if (pieces_.size() < 2) return;
-  double peak = 0.0;
-  for (const Piece& piece : pieces_) peak = std::max(peak, std::abs(piece.c[0]));
   const double last = std::abs(values_at(pieces_, pieces_.size() - 1).before);
+  double peak = last;
+  for (const Piece& piece : pieces_) peak = std::max(peak, std::abs(piece.c[0]));
   if (!(last > k_much * peak)) return;
   char text[120];
   std::snprintf(text, sizeof text, "the record ends at %.0f %% of its largest value, within an event: what came after is missing",

@@ -103,6 +103,7 @@ public:
   };
   /// Returns all doubts.
   [[nodiscard]] const std::vector<Doubt>& doubts() const { return doubts_; }
+  /// Adds a doubt.
   void add_doubt(double t, std::string text) { doubts_.push_back({t, std::move(text)}); }
   /// Adds a doubt if the last value before the final jump to zero is a large part of the largest one: the record ends within an event.
   void doubt_cut_end();

@@ -7,7 +7,6 @@
 #include "mbd/model/signal_course.h"
 #include "mbd/model/signal_network.h"
 #include "mbd/run/acting_signals.h"
-#include "mbd/run/channel_owners.h"
 #include "mbd/run/late_formulas.h"
 #include "mbd/run/limited_channels.h"
 #include "mbd/run/range_index.h"
@@ -15,9 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
-#include <string_view>
-#include <unordered_map>
 #include <unordered_set>
 
 namespace steplap {
@@ -349,63 +345,6 @@ std::vector<Finding> doubts_of_records(const LoadedModel& loaded, const std::vec
   return findings;
 }
 
-// Bodies and elements of which some channel changed during the run by more than rounding.
-class Changes {
-public:
-  Changes(const Model& model, const RunResult& result) : model_(model) {
-    constexpr double k_rounding = 1e-9; // relative to the largest value of the unit
-    std::unordered_map<std::string_view, double> largest;
-    for (const ChannelRange& range : result.ranges) {
-      double& size = largest[range.channel->unit];
-      size = std::fmax(size, std::fmax(std::abs(range.low.value), std::abs(range.high.value))); // ignores channels without a value
-    }
-    for (const ChannelRange& range : result.ranges)
-      if (!(range.high.value - range.low.value <= k_rounding * largest[range.channel->unit]))
-        changed_.insert(owner_of(range.channel->name));
-  }
-  /// Returns true if the body or element of this name, or an element on its bodies, changed or is driven or loaded by a signal, and for names
-  /// that are neither.
-  [[nodiscard]] bool reach(const std::string& owner) const {
-    if (changed_.count(owner) > 0) return true;
-    std::set<std::string> bodies;
-    for (const Body& body : model_.bodies)
-      if (body.name == owner) bodies.insert(owner);
-    for (const ElementEntry& entry : model_.elements)
-      if (entry.element->name == owner)
-        for (const std::string& body : bodies_of(model_, entry)) bodies.insert(body);
-    if (bodies.empty()) return true;
-    return std::any_of(model_.elements.begin(), model_.elements.end(), [&](const ElementEntry& entry) {
-      const std::vector<std::string> own = bodies_of(model_, entry);
-      return std::any_of(own.begin(), own.end(), [&](const std::string& body) { return bodies.count(body) > 0; }) &&
-             (changed_.count(entry.element->name) > 0 || !parts_of(entry.kind->fields, entry.element.get()).empty());
-    });
-  }
-
-private:
-  const Model& model_;
-  std::unordered_set<std::string> changed_;
-};
-
-// Returns a finding for each criterion that is met by values which nothing in the run could change, although loads change with time.
-std::vector<Finding> criteria_beyond_reach(const Model& model, const RunResult& result) {
-  std::vector<Finding> findings;
-  if (result.ranges.empty()) return findings;
-  const Changes changes(model, result);
-  for (const Criterion& criterion : model.criteria) {
-    if (!criterion.event.empty()) continue;
-    std::set<std::string> owners;
-    for (const ChannelRange& range : result.ranges)
-      if (matches_pattern(range.channel->name, criterion.channel)) owners.merge(owners_of(model, range.channel->name));
-    if (owners.empty() || std::any_of(owners.begin(), owners.end(), [&](const std::string& owner) { return changes.reach(owner); }))
-      continue;
-    findings.push_back(warning("criterion_not_reached",
-                               "acceptance '" + criterion.name + "': no load that changes with time reaches '" + criterion.channel +
-                                   "', nothing that it depends on changed in this run",
-                               criterion.where));
-  }
-  return findings;
-}
-
 } // namespace
 
 std::vector<Finding> loads_beyond_end(const LoadedModel& loaded) {
@@ -421,8 +360,6 @@ std::vector<Finding> loads_not_acted(const LoadedModel& loaded, const RunResult&
   const Judge judge(loaded, result.final_state.t, &growth, &result, have_course(loaded.model, uses));
   std::vector<Finding> findings = findings_of_uses(loaded, uses, judge);
   for (Finding& finding : doubts_of_records(loaded, uses)) findings.push_back(std::move(finding));
-  if (have_course(loaded.model, uses))
-    for (Finding& finding : criteria_beyond_reach(loaded.model, result)) findings.push_back(std::move(finding));
   for (Finding& finding : late_formulas(loaded, result)) findings.push_back(std::move(finding));
   return findings;
 }

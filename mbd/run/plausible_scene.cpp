@@ -208,9 +208,9 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
 }
 
 std::vector<Finding> implausible_gravity(const LoadedModel& loaded) {
-  constexpr double k_least = 1.0, k_most = 60.0; // m/s²: the Moon has 1.6, Jupiter 25; a constant pull of 5 g may be added
+  constexpr double k_most = 60.0; // m/s²: Jupiter has 25; a constant pull of 5 g may be added, or one that takes nearly all of it
   const double size = loaded.model.header.gravity.norm();
-  if (size == 0.0 || (size >= k_least && size <= k_most)) return {};
+  if (size <= k_most) return {};
   return {warning("implausible_gravity",
                   "gravity is " + rounded_text(size, 3) + " m/s², " + rounded_text(size / 9.80665, 3) + " times that of the Earth",
                   loaded.model.header.where)};

@@ -13,7 +13,7 @@ namespace steplap {
 /// dry contacts: a note if the element gives a `source`, otherwise a warning. Above the highest value of any dry contact the warning also
 /// prevents the verdict "hold".
 [[nodiscard]] std::vector<Finding> implausible_friction(const LoadedModel& loaded);
-/// Returns a finding if gravity is neither zero nor between that of the Moon and six times that of the Earth.
+/// Returns a finding if gravity is more than six times that of the Earth.
 [[nodiscard]] std::vector<Finding> implausible_gravity(const LoadedModel& loaded);
 /// Returns one finding for each group of positions, velocities, masses or inertias of too different magnitude, and for each angle beyond a
 /// full turn.

@@ -80,8 +80,9 @@ public:
   void finish(const Snapshot& snapshot);
   /// Computes ChannelRange::final_rate from the state `before` seconds earlier on the same motion. Precondition: finish().
   void finish_rates(const Snapshot& snapshot, double before);
-  /// Starts and ends the computation of ChannelRange::final_bend from the states `before` and 2 `before` seconds earlier, in this order.
+  /// Starts the computation of ChannelRange::final_bend from the state `before` seconds earlier. Precondition: finish().
   void begin_bends(const Snapshot& snapshot);
+  /// Ends it from the state 2 `before` seconds earlier.
   void finish_bends(const Snapshot& snapshot, double before);
 
   /// Returns the ranges in the order of the system's channels; complete after finish().

@@ -173,7 +173,7 @@ TEST_CASE("a force that jumps against the motion is never on the wrong side of i
         const Run r = run(scene, {method, 1e-9, 2.0, 1e-3});
         const std::vector<double> rate = r.series("b.vx"), f = r.series("d.force");
         for (std::size_t i = 0; i < rate.size(); ++i) {
-          if (std::abs(rate[i] - 0.2) < 1e-6) continue;
+          if (std::abs(rate[i] - 0.2) < 1e-5) continue; // to and fro in parts of 1e-4 of a step, at some m/s²
           CHECK(std::abs(f[i] + 4.0 * rate[i] * (rate[i] > 0.2 ? 2.0 : 1.0)) < 1e-9);
           ++compared;
         }
