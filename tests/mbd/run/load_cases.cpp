@@ -88,12 +88,15 @@ value = 0.0
 
 std::string never(const std::string& step) { return "[[action]]\nname = \"n\"\nwhen = \"b.x > '1 m'\"\ndo = [\"" + step + "\"]\n"; }
 
-// Rises from 0 at 0.5 s to 200 at 1 s.
-std::string ramp_file() {
-  const auto file = std::filesystem::temp_directory_path() / "steplap_load_ramp.csv";
-  std::ofstream(file) << "t [s],p\n0.5,0\n0.75,100\n1.0,200\n";
+std::string record_file(const std::string& name, const std::string& rows) {
+  const auto file = std::filesystem::temp_directory_path() / ("steplap_load_" + name + ".csv");
+  std::ofstream(file) << "t [s],p\n" << rows;
   return file.string();
 }
+// Rises from 0 at 0.5 s to 200 at 1 s.
+std::string ramp_file() { return record_file("ramp", "0.5,0\n0.75,100\n1.0,200\n"); }
+// Rises from 0 at 0.5 s to 200, and is 0 again at 1 s.
+std::string triangle_file() { return record_file("triangle", "0.5,0\n0.75,200\n1.0,0\n"); }
 
 } // namespace
 
@@ -143,7 +146,7 @@ std::vector<LoadKind> load_kinds() {
        false, 0.5, 4.0, true},
       {"bump", signal("p", "haversine", "peak = 0.1\nstart = 0.5\nduration = 0.5") + drive("position"), false, 0.5, 1.0},
       {"ramp and hold", signal("p", "record", "file = \"" + ramp_file() + "\"\nafter = \"hold\""), true, 0.5, 1.0, true},
-      {"record", signal("p", "record", "file = \"" + ramp_file() + "\""), true, 0.5, 1.0},
+      {"record", signal("p", "record", "file = \"" + triangle_file() + "\""), true, 0.5, 1.0},
   };
   return kinds;
 }
