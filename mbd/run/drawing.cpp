@@ -58,9 +58,10 @@ public:
 
   // Elements and bodies become text one by one, because their trees take ten times as much memory.
   std::string text() {
-    const std::string elements = list_of(model_.elements, [this](const ElementEntry& entry) { return element_json(entry); });
-    // must follow the elements, which define geometry of bodies
-    const std::string bodies = list_of(model_.bodies, [this](const Body& body) { return body_json(body); });
+    std::string elements;
+    append_list(elements, model_.elements, [this](const ElementEntry& entry) { return element_json(entry); });
+    std::string text = "{\"bodies\":"; // must follow the elements, which define geometry of bodies
+    append_list(text, model_.bodies, [this](const Body& body) { return body_json(body); });
     Json json = object_with_room(8);
     append(json, "ground") = ground_json();
     append(json, "planes") = planes_;
@@ -70,16 +71,16 @@ public:
     append(json, "looks") = looks_json();
     append(json, "seen_from") = model_.output.seen_from;
     append(json, "gravity") = point_json(model_.header.gravity);
-    return "{\"bodies\":" + bodies + ",\"elements\":" + elements + "," + text_of(json).substr(1);
+    return text.append(",\"elements\":").append(elements).append(",").append(text_of(json), 1);
   }
 
 private:
   // Invalid UTF-8 in names is replaced.
   [[nodiscard]] static std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-  template <class Entries, class Make> [[nodiscard]] static std::string list_of(const Entries& entries, const Make& make) {
-    std::string text = "[";
-    for (const auto& entry : entries) text.append(text.size() > 1 ? "," : "").append(text_of(make(entry)));
-    return text + "]";
+  template <class Entries, class Make> static void append_list(std::string& text, const Entries& entries, const Make& make) {
+    const char* before = "[";
+    for (const auto& entry : entries) text.append(std::exchange(before, ",")).append(text_of(make(entry)));
+    text.append(entries.empty() ? "[]" : "]");
   }
   [[nodiscard]] Json cores_json() const {
     Json cores = Json::array();

@@ -255,7 +255,8 @@ std::vector<ResultFile> result_files(const Report& report) {
   return {noted(prefix + "trajectory.csv", rows, records),
           noted(prefix + "events.csv", whole(events), records),
           noted(prefix + "model.toml", whole(model_file_text(*run.loaded)), records),
-          noted(prefix + "drawing.json", whole(drawing_json(run.loaded->model, *run.loaded->views)), records),
+          noted(
+              prefix + "drawing.json", [&run](const FileSink& put) { put(drawing_json(run.loaded->model, *run.loaded->views)); }, records),
           {prefix + "summary.json", "", [&report, records](const FileSink& put) { write_summary(report, *records, put); }}};
 }
 

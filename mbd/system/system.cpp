@@ -535,7 +535,6 @@ std::unique_ptr<System> compile(const Model& model, const std::vector<std::strin
   builder.finish();
   requested.add();
   if (!builder.errors_.empty()) throw ModelError(builder.errors_);
-  builder.system_->channels.shrink_to_fit(); // of a large scene, the unused half is 50 MB
   return std::move(builder.system_);
 }
 
