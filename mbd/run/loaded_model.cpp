@@ -12,6 +12,8 @@
 #include "mbd/run/tipping.h"
 #include "mbd/simulation/trajectory.h"
 
+#include <malloc.h>
+
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -19,6 +21,8 @@
 namespace steplap {
 
 namespace {
+
+constexpr std::size_t k_large_text = 1'000'000; // characters of a model
 
 // Returns "wagon" for "models/wagon.toml". A name that consists of dots keeps its extension, because it would denote another folder.
 std::string name_of_model(const std::string& path) {
@@ -76,6 +80,7 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std
   const InputFiles read; // must outlive the signals that are built here
   loaded->views = catalogue.views;
   loaded->model = read_model(path, catalogue, overrides, &loaded->text);
+  if (loaded->text.size() > k_large_text) ::malloc_trim(0); // the trees of a file take ten times its size, in pieces that nothing else fits
   loaded->system = compiled(loaded->model);
   loaded->inputs = read.files();
   put_together(*loaded);
