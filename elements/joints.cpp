@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -51,17 +52,22 @@ std::string_view sign_of(const RowSpec& row) {
   return quantity == "force_y" ? "along y of marker b's axes" : "along the free axis turned counter-clockwise by a right angle";
 }
 
-// Returns the size of the force of rows `first` and `first` + 1 as a formula of both: its minimum is a kink where one of them passes zero,
-// which samples do not show.
-FormulaValue size_of_reaction(const std::string& element, int first) {
-  static const Formula size("hypot(x, y)", "", {});
-  static const std::string newton = "N", none;
-  const auto component = [&](const char* name, int row) {
-    return Channel{element + name, newton, none, none, none, [row](const Snapshot& s) { return s.row_force[row]; }};
-  };
-  const Channel x = component(".force_x", first), y = component(".force_y", first + 1);
-  return {std::make_shared<const FormulaChannel>(size.tree(), std::vector<const Channel*>{&x, &y}, 1.0)};
-}
+// Size of the force of rows `first` and `first` + 1 as a formula of both: its minimum is a kink where one of them passes zero, which samples
+// do not show. The formula is made when the channel is.
+struct ReactionSize {
+  const std::string& element;
+  int first;
+
+  operator std::function<double(const Snapshot&)>() const { // NOLINT: implicit
+    static const Formula size("hypot(x, y)", "", {});
+    static const std::string newton = "N", none;
+    const auto component = [&](const char* name, int row) {
+      return Channel{element + name, newton, none, none, none, [row](const Snapshot& s) { return s.row_force[row]; }};
+    };
+    const Channel x = component(".force_x", first), y = component(".force_y", first + 1);
+    return FormulaValue{std::make_shared<const FormulaChannel>(size.tree(), std::vector<const Channel*>{&x, &y}, 1.0)};
+  }
+};
 
 void add(SystemBuilder& builder, std::vector<RowSpec> rows, bool is_rigid = false) {
   const int first = builder.next_row();
@@ -74,7 +80,7 @@ void add(SystemBuilder& builder, std::vector<RowSpec> rows, bool is_rigid = fals
   std::copy(rows.begin(), rows.end(), held.begin());
   if (rows.size() > 1 && rows[1].kind == MeasureKind::axis)
     builder.offer_channel("reaction", "N", {"size of the reaction force", "never negative"},
-                          size_of_reaction(builder.compiled().element_names[builder.element_index()], first));
+                          ReactionSize{builder.compiled().element_names[builder.element_index()], first});
   builder.offer_channel("power", "W", "power of the reactions: zero up to numerical error",
                         [held, count = static_cast<int>(rows.size()), first](const Snapshot& s) {
                           double power = 0.0;

@@ -262,6 +262,10 @@ EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynam
   const auto was_never_positive = [this](int slot) {
     return low_.theta < 1.0 ? armed_[slot] == 0 && low_.event_value[slot] < -tolerance_[slot] : low_.event_value[slot] < 0.0;
   };
+  const auto falls_from_start = [this](int slot) { // after survey_interval() of a part that begins at k_arming_theta
+    const double start = nodes_[0].event_value[slot];
+    return armed_before_[slot] == 0 && start < -tolerance_[slot] && nodes_[1].event_value[slot] < start;
+  };
   for (int parts = 0; !intervals_.empty(); ++parts) {
     const Interval interval = intervals_.back();
     intervals_.pop_back();
@@ -272,18 +276,12 @@ EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynam
       return Bracket::immediate;
     }
     const bool is_bracket = survey_interval(integrator, dynamics, interval);
-    // A function that is not armed and falls from below zero at k_arming_theta shows the same, even if it is positive again later.
-    if (interval.begin == k_arming_theta && interval.end == 1.0) {
-      fired_before_.clear();
-      std::copy_if(every_slot.begin(), every_slot.end(), std::back_inserter(fired_before_), [this](int slot) {
-        const double start = nodes_[0].event_value[slot];
-        return armed_before_[slot] == 0 && start < -tolerance_[slot] && nodes_[1].event_value[slot] < start;
-      });
-      if (!fired_before_.empty()) {
-        std::swap(fired_, fired_before_);
-        high_.theta = k_arming_theta;
-        return Bracket::immediate;
-      }
+    // So does a function that is negative and falls from k_arming_theta on, even if it is positive again at the end of the step.
+    if (interval.begin == k_arming_theta && interval.end == 1.0 && std::any_of(every_slot.begin(), every_slot.end(), falls_from_start)) {
+      fired_.clear();
+      std::copy_if(every_slot.begin(), every_slot.end(), std::back_inserter(fired_), falls_from_start);
+      high_.theta = k_arming_theta;
+      return Bracket::immediate;
     }
     if (is_bracket) {
       const bool is_any_late = low_.theta >= k_arming_theta && std::any_of(every_slot.begin(), every_slot.end(), was_never_positive);

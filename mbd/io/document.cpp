@@ -156,7 +156,7 @@ private:
         else removed.insert(name);
       } else if (is_new) {
         if (take_flag(entry, "replace")) report_missing(entry, over.key, "replaced", inherited);
-        if (!entry.find("unset")) {
+        if (!entry.find("unset")) { // nothing is inherited, and nothing reported: moved as it is
           base.children.push_back(std::move(entry));
           continue;
         }

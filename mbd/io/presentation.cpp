@@ -6,6 +6,7 @@
 #include "mbd/io/units.h"
 #include "mbd/model/action.h"
 #include "mbd/simulation/trajectory.h"
+#include "mbd/system/requested_channels.h"
 
 #include <algorithm>
 #include <charconv>
@@ -131,10 +132,8 @@ private:
 
   // Returns the first channel on request that matches the pattern; "" if there is none.
   [[nodiscard]] std::string name_on_request(const std::string& pattern) const {
-    Model everything = model_;
-    everything.output.also = {"*"};
     try {
-      const std::unique_ptr<System> system = compile(everything);
+      const std::unique_ptr<System> system = compile_with_all_channels(model_);
       for (const Channel& channel : system->channels)
         if (channel.is_on_request && matches_pattern(channel.name, pattern)) return channel.name;
     } catch (const ModelError&) { // names that only "*" makes ambiguous

@@ -4,6 +4,8 @@
 #include "mbd/io/csv.h"
 #include "mbd/io/units.h"
 
+#include <cmath>
+
 namespace steplap {
 
 namespace {
@@ -20,27 +22,45 @@ struct Record : SignalDefinition {
   std::string sha256;
 };
 
-// Returns the factor from the unit that `key` or else the header of the column gives to `wanted`; 1 if neither does.
-double unit_factor(const Record& record, const std::string& key, const std::string& given, const std::string& in_header,
+Quantity one(const std::string& unit, const std::string& wanted) { return parse_quantity("1 " + unit, wanted); }
+
+// Returns the unit in the header of a column, as parse_quantity() reads it; "" if there is none. No record is in grams.
+std::string unit_in_header(const std::string& text, const std::string& wanted) {
+  if (text == "-") return "";
+  return wanted != "s" && (text == "g" || text == "G") ? "gravity" : text;
+}
+
+// Refuses a column such as "force (kN)" without `key`: parentheses may hold a unit or a part of the name.
+void refuse_unit_in_parentheses(const Record& record, const std::string& key, const std::string& name, const std::string& wanted) {
+  const std::size_t open = name.rfind('(');
+  if (open == std::string::npos || name.back() != ')') return;
+  const Quantity found = one(unit_in_header(name.substr(open + 1, name.size() - open - 2), wanted), wanted);
+  if (found.problem.empty() && found.value != 1.0)
+    throw ModelError(record.where, "record '" + record.name + "': column '" + name +
+                                       "' may be in the unit in its parentheses: say which by '" + key + "'");
+}
+
+// Returns the factor to `wanted` from the unit that `given`, the field `key`, or else the header of the column names; 1 if neither does.
+double unit_factor(const Record& record, const std::string& key, const std::string& given, const CsvTable& table, std::size_t column,
                    const std::string& wanted) {
-  const bool is_of_gravity = wanted != "s" && (in_header == "g" || in_header == "G"); // no record is in grams
-  const std::string header = is_of_gravity ? "gravity" : in_header, &unit = given.empty() ? header : given;
+  constexpr double k_same = 1e-9; // two spellings of one unit may differ by rounding
+  const std::string in_header = table.units.empty() ? std::string() : table.units[column];
+  const std::string header = unit_in_header(in_header, wanted), &unit = given.empty() ? header : given;
+  if (given.empty() && header.empty() && !table.names.empty()) refuse_unit_in_parentheses(record, key, table.names[column], wanted);
   if (unit.empty()) return 1.0;
-  if (!given.empty() && !header.empty()) {
-    const Quantity own = parse_quantity("1 " + given, wanted), of_header = parse_quantity("1 " + header, wanted);
-    if (own.problem.empty() && of_header.problem.empty() && own.value != of_header.value)
+  if (!given.empty() && !header.empty() && one(header, wanted).problem.empty())
+    if (const Quantity ratio = one(given, header); !ratio.problem.empty() || !(std::abs(ratio.value - 1.0) <= k_same))
       throw ModelError(record.where, "'" + key + "' of record '" + record.name + "' is '" + given + "', but the column says [" + in_header +
                                          "]: drop '" + key + "', or correct the file");
-  }
-  const Quantity zero = parse_quantity("0 " + unit, wanted), one = parse_quantity("1 " + unit, wanted);
-  if (!one.problem.empty() && given.empty())
+  const Quantity zero = parse_quantity("0 " + unit, wanted), factor = one(unit, wanted);
+  if (!factor.problem.empty() && given.empty())
     throw ModelError(record.where,
                      "the column's unit [" + in_header + "] of record '" + record.name + "' is not known: give it by '" + key + "'");
-  if (!one.problem.empty()) throw ModelError(record.where, "'" + key + "' of record '" + record.name + "': " + one.problem);
+  if (!factor.problem.empty()) throw ModelError(record.where, "'" + key + "' of record '" + record.name + "': " + factor.problem);
   if (zero.value != 0.0)
     throw ModelError(record.where,
                      "'" + key + "' of record '" + record.name + "' must be a unit with its zero at zero, got '" + unit + "'");
-  return one.value;
+  return factor.value;
 }
 
 void check_ascending(const CsvTable& table, const std::vector<double>& times) {
@@ -56,9 +76,8 @@ Signal build_record(const SignalDefinition& definition) {
   const std::size_t time_column = table.column(record.time_column, record.where), column = table.column(record.column, record.where);
   const auto &times = table.columns[time_column], &values = table.columns[column];
   check_ascending(table, times);
-  const auto in_header = [&table](std::size_t k) { return table.units.empty() ? std::string() : table.units[k]; };
-  const double time_scale = unit_factor(record, "time_unit", record.time_unit, in_header(time_column), "s");
-  const double scale = record.scale * unit_factor(record, "unit", record.unit, in_header(column), "*");
+  const double time_scale = unit_factor(record, "time_unit", record.time_unit, table, time_column, "s");
+  const double scale = record.scale * unit_factor(record, "unit", record.unit, table, column, "*");
   std::vector<Signal::Piece> pieces(times.size());
   for (std::size_t i = 0; i < times.size(); ++i) {
     pieces[i].start = times[i] * time_scale + record.offset;

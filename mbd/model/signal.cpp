@@ -487,7 +487,8 @@ void Signal::doubt_cut_end() {
   for (const Piece& piece : pieces_) peak = std::max(peak, std::abs(piece.c[0]));
   if (!(last > k_much * peak)) return;
   char text[120];
-  std::snprintf(text, sizeof text, "the record ends at %.0f %% of its largest value, within an event: what came after is missing",
+  std::snprintf(text, sizeof text,
+                "the record ends at %.0f %% of its largest value, within an event: give what came after, or end the run there",
                 100.0 * last / peak);
   add_doubt(pieces_.back().start, text);
 }

@@ -136,12 +136,17 @@ Verdict LoadCaseResults::verdict() const {
 
 namespace {
 
-// Returns " Judged in no case: 'chains'." with all criteria of the models to which no case applies; "" if there are none.
+// Returns " Judged in no case: 'chains'." with all criteria of the models that no case judges; "" if there are none. A case whose run did not
+// start has no limits.
 std::string unjudged_text(const LoadCaseResults& results) {
+  const auto judges = [](const CaseResult& one, const Criterion& criterion) {
+    if (one.limits.empty()) return applies(one.load, criterion);
+    return std::any_of(one.limits.begin(), one.limits.end(), [&](const CaseLimit& limit) { return limit.name == criterion.name; });
+  };
   std::string names;
   for (const auto& model : results.models)
     for (const Criterion& criterion : model->model.criteria)
-      if (std::none_of(results.cases.begin(), results.cases.end(), [&](const CaseResult& one) { return applies(one.load, criterion); }))
+      if (std::none_of(results.cases.begin(), results.cases.end(), [&](const CaseResult& one) { return judges(one, criterion); }))
         names += (names.empty() ? "'" : ", '") + criterion.name + "'";
   return names.empty() ? names : " Judged in no case: " + names + ".";
 }

@@ -7,10 +7,10 @@
 #include "mbd/model/action.h"
 #include "mbd/model/formula_fields.h"
 #include "mbd/model/signal_network.h"
-#include "mbd/run/channel_owners.h"
 #include "mbd/run/limited_channels.h"
 #include "mbd/run/quantity_text.h"
 #include "mbd/run/range_index.h"
+#include "mbd/system/places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,16 +56,51 @@ std::string word_of(const std::string& codes, double value) {
   return "";
 }
 
+// Returns the owner of a channel, its name up to the last point: "box" of "box.x".
+std::string owner_of(const std::string& channel) { return channel.substr(0, channel.rfind('.')); }
+
+// Returns the owners of a channel and, if it is a formula, of all channels that it uses directly or through other formulas.
+std::set<std::string> owners_of(const Model& model, const std::string& channel) {
+  std::set<std::string> owners, seen{channel};
+  std::vector<std::string> names{channel};
+  while (!names.empty()) {
+    const std::string name = std::move(names.back());
+    names.pop_back();
+    bool is_formula = false;
+    for (const DefinedChannel& defined : model.channels) {
+      if (defined.name != name) continue;
+      is_formula = true;
+      const Formula formula(defined.expression, "", {});
+      for (const std::string& each : formula.names())
+        if (seen.insert(each).second) names.push_back(each);
+    }
+    if (!is_formula) owners.insert(owner_of(name));
+  }
+  return owners;
+}
+
+// Returns the moving bodies that an element connects.
+std::vector<std::string> bodies_of(const Model& model, const ElementEntry& entry) {
+  std::vector<std::string> bodies;
+  for (const Field& field : entry.kind->fields.fields())
+    if (field.type == FieldType::marker || field.type == FieldType::body) {
+      const auto name = std::get<std::string>(field.get(entry.element.get()));
+      const Body* const body = name.empty() ? nullptr : place_of(model, name).body;
+      if (body && !body->fixed) bodies.push_back(body->name);
+    }
+  return bodies;
+}
+
 bool slips_at_end(const RangeIndex& ranges, const std::string& element) {
   const ChannelRange* const mode = ranges.find(element + ".mode");
   const std::string word = mode ? word_of(mode->channel->codes, mode->final) : "";
   return word == "slips" || word == "slides";
 }
 
-// Elements that slip when the run ends, and the channels that move with them.
+// Elements that slip when the run ends, and the places that move with them.
 class Slides {
 public:
-  Slides(const Model& model, const RunResult& result) : model_(model) {
+  Slides(const Model& model, const RunResult& result) : model_(model), result_(result) {
     const RangeIndex ranges(result.ranges);
     for (const ElementEntry& entry : model.elements) {
       if (!slips_at_end(ranges, entry.element->name)) continue;
@@ -73,28 +108,31 @@ public:
       for (const std::string& body : bodies_of(model_, entry)) owners_.insert(body);
     }
   }
-  /// Returns true if the channel, or one that its formula names, belongs to an element that slips or to one of its bodies.
-  [[nodiscard]] bool moves(const std::string& channel) const {
-    const auto owners = owners_of(model_, channel);
+  /// Returns true if the channel is a place that belongs to an element that slips or to one of its bodies, or a formula of such channels.
+  [[nodiscard]] bool moves(const Channel& channel) const {
+    if (!is_place(channel)) return false;
+    const auto owners = owners_of(model_, channel.name);
     return std::any_of(owners.begin(), owners.end(), [this](const std::string& owner) { return owners_.count(owner) > 0; });
   }
-  /// Returns true if a criterion limits a coordinate of the element's bodies, or a formula of their channels.
+  /// Returns true if a criterion limits a place of the element's bodies, or a formula of their channels.
   [[nodiscard]] bool is_limited(const ElementEntry& entry) const {
     const std::vector<std::string> bodies = bodies_of(model_, entry);
-    return std::any_of(model_.criteria.begin(), model_.criteria.end(), [&](const Criterion& criterion) {
-      const auto ends_it = [&](const char* coordinate) { return criterion.channel.ends_with(coordinate); };
-      const bool is_coordinate = ends_it(".x") || ends_it(".y") || ends_it(".theta");
-      if (!criterion.event.empty() || (!is_coordinate && !is_formula(criterion.channel))) return false;
-      const auto owners = owners_of(model_, criterion.channel);
+    return std::any_of(result_.ranges.begin(), result_.ranges.end(), [&](const ChannelRange& range) {
+      if (!is_place(*range.channel) || !is_limited(range.channel->name)) return false;
+      const auto owners = owners_of(model_, range.channel->name);
       return std::any_of(bodies.begin(), bodies.end(), [&](const std::string& body) { return owners.count(body) > 0; });
     });
   }
 
 private:
-  [[nodiscard]] bool is_formula(const std::string& channel) const {
-    return std::any_of(model_.channels.begin(), model_.channels.end(), [&](const DefinedChannel& d) { return d.name == channel; });
+  static bool is_place(const Channel& channel) { return channel.unit == "m" || channel.unit == "rad"; }
+  [[nodiscard]] bool is_limited(const std::string& channel) const {
+    return std::any_of(model_.criteria.begin(), model_.criteria.end(),
+                       [&](const Criterion& criterion) { return criterion.event.empty() && matches_pattern(channel, criterion.channel); });
   }
+
   const Model& model_;
+  const RunResult& result_;
   std::unordered_set<std::string> owners_;
 };
 
@@ -141,9 +179,9 @@ std::optional<double> builds_up_in(const ReserveHistory& history, std::size_t i,
 namespace {
 
 // Returns the value that a channel reaches within `length` seconds after the end, at its present rate and growing second derivative. A
-// channel of a slide goes on for up to k_far of this time: as far as its deceleration lets it, or for all of that time if it has none.
+// place in a slide goes on for up to k_far of this time: as far as its deceleration lets it, or for all of that time if it has none.
 double value_after_end(const ChannelRange& range, double length, bool is_slide) {
-  constexpr double k_far = 50.0;
+  constexpr double k_far = 50.0; // a slide of half a minute, where the run shows half a second
   const double rate = range.final_rate, bend = range.final_bend;
   const double growing = bend * rate > 0.0 ? bend : 0.0;
   if (!is_slide) return range.final + (rate + 0.5 * growing * length) * length;
@@ -166,7 +204,7 @@ std::vector<Finding> growing_criteria(const LoadedModel& loaded, const RunResult
     const LimitedChannel& limited = all[i];
     const ChannelRange& range = result.ranges[limited.channel];
     const double slack = k_still_worst * (range.high.value - range.low.value), rate = range.final_rate;
-    const double then = value_after_end(range, length, slides.moves(range.channel->name));
+    const double then = value_after_end(range, length, slides.moves(*range.channel));
     const bool rises = rate > 0.0 && range.final >= range.high.value - slack && then >= limited.largest;
     const bool falls = rate < 0.0 && range.final <= range.low.value + slack && then <= limited.least;
     const std::string &unit = range.channel->unit, &name = range.channel->name;

@@ -212,7 +212,8 @@ std::vector<Finding> implausible_gravity(const LoadedModel& loaded) {
   const double size = loaded.model.header.gravity.norm();
   if (size <= k_most) return {};
   return {warning("implausible_gravity",
-                  "gravity is " + rounded_text(size, 3) + " m/s², " + rounded_text(size / 9.80665, 3) + " times that of the Earth",
+                  "gravity is " + rounded_text(size, 3) + " m/s², " + rounded_text(size / 9.80665, 3) +
+                      " times that of the Earth: correct 'gravity'",
                   loaded.model.header.where)};
 }
 

@@ -205,15 +205,18 @@ void ExtremeFinder::finish_rates(const Snapshot& snapshot, double before) {
     if (!is_mode(*each.channel)) each.final_rate = (each.final - each.channel->value(snapshot)) / before;
 }
 
-void ExtremeFinder::begin_bends(const Snapshot& snapshot) {
-  for (ChannelRange& each : ranges_) each.final_bend = is_mode(*each.channel) ? 0.0 : each.channel->value(snapshot);
+std::vector<double> ExtremeFinder::values(const Snapshot& snapshot) const {
+  std::vector<double> values;
+  values.reserve(ranges_.size());
+  for (const ChannelRange& each : ranges_) values.push_back(each.channel->value(snapshot));
+  return values;
 }
 
-void ExtremeFinder::finish_bends(const Snapshot& snapshot, double before) {
-  for (ChannelRange& each : ranges_) {
-    const double middle = each.final_bend;
-    each.final_bend = is_mode(*each.channel) ? 0.0 : (each.final - 2.0 * middle + each.channel->value(snapshot)) / (before * before);
-    if (!std::isfinite(each.final_bend)) each.final_bend = 0.0;
+void ExtremeFinder::finish_bends(const std::vector<double>& middle, const Snapshot& snapshot, double before) {
+  for (std::size_t i = 0; i < ranges_.size(); ++i) {
+    ChannelRange& each = ranges_[i];
+    const double bend = (each.final - 2.0 * middle[i] + each.channel->value(snapshot)) / (before * before);
+    if (!is_mode(*each.channel) && std::isfinite(bend)) each.final_bend = bend;
   }
 }
 

@@ -80,10 +80,11 @@ public:
   void finish(const Snapshot& snapshot);
   /// Computes ChannelRange::final_rate from the state `before` seconds earlier on the same motion. Precondition: finish().
   void finish_rates(const Snapshot& snapshot, double before);
-  /// Starts the computation of ChannelRange::final_bend from the state `before` seconds earlier. Precondition: finish().
-  void begin_bends(const Snapshot& snapshot);
-  /// Ends it from the state 2 `before` seconds earlier.
-  void finish_bends(const Snapshot& snapshot, double before);
+  /// Returns the values of all channels of the system.
+  [[nodiscard]] std::vector<double> values(const Snapshot& snapshot) const;
+  /// Computes ChannelRange::final_bend from the values `before` seconds earlier and the state 2 `before` seconds earlier. Precondition:
+  /// finish().
+  void finish_bends(const std::vector<double>& middle, const Snapshot& snapshot, double before);
 
   /// Returns the ranges in the order of the system's channels; complete after finish().
   [[nodiscard]] const std::vector<ChannelRange>& ranges() const { return ranges_; }

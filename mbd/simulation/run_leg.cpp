@@ -505,23 +505,30 @@ void RunLeg::finish_extremes() {
   constexpr double k_before = 1e-7;
   const double before = k_before * options_.end;
   const std::vector<double> end = y_, rates = dy_;
-  const auto n = static_cast<std::size_t>(dynamics_.dimension());
-  for (std::size_t i = 0; i < n; ++i) y_[i] -= before * rates[i];
   const long evaluations = dynamics_.evaluations();
+  for (int i = 0; i < dynamics_.dimension(); ++i) y_[static_cast<std::size_t>(i)] -= before * rates[static_cast<std::size_t>(i)];
   dynamics_.rates(t - before, y_.data(), dy_.data());
   extremes_->finish_rates(dynamics_.snapshot(dy_.data()), before);
-  if (options_.has_growth) {               // second derivatives: earlier states by the present accelerations
-    constexpr double k_well_before = 1e-4; // of the run: differences of positions are then accurate to 1e-8 of them
-    const double step = k_well_before * options_.end;
-    const auto coordinates = static_cast<std::size_t>(dynamics_.coordinate_count());
-    for (const double back : {step, 2.0 * step}) {
-      for (std::size_t i = 0; i < n; ++i) y_[i] = end[i] - back * rates[i];
-      for (std::size_t i = 0; i < coordinates; ++i) y_[i] += 0.5 * back * back * rates[coordinates + i];
-      dynamics_.rates(t - back, y_.data(), dy_.data());
-      back == step ? extremes_->begin_bends(dynamics_.snapshot(dy_.data())) : extremes_->finish_bends(dynamics_.snapshot(dy_.data()), step);
-    }
-  }
+  if (options_.has_growth) finish_bends(t, end, rates);
   evaluations_behind_end_ += dynamics_.evaluations() - evaluations;
+}
+
+// Computes the second derivatives of all channels at the end of the run, from two earlier states that have the same accelerations. `end`,
+// `rates`: packed state and its rates at the end, at time t.
+void RunLeg::finish_bends(double t, const std::vector<double>& end, const std::vector<double>& rates) {
+  // The states are within the last step, over which accelerations change little, unless that step is so short (at the end of the run, at an
+  // event) that differences of positions would be rounding, or so long that nothing moves.
+  constexpr double k_of_step = 0.1, k_least = 1e-6, k_most = 1e-4; // the last two relative to the run
+  const double before = std::clamp(k_of_step * integrator_->h(), k_least * options_.end, k_most * options_.end);
+  const auto earlier = [&](double back) {
+    const auto n = static_cast<std::size_t>(dynamics_.dimension()), coordinates = static_cast<std::size_t>(dynamics_.coordinate_count());
+    for (std::size_t i = 0; i < n; ++i) y_[i] = end[i] - back * rates[i];
+    for (std::size_t i = 0; i < coordinates; ++i) y_[i] += 0.5 * back * back * rates[coordinates + i];
+    dynamics_.rates(t - back, y_.data(), dy_.data());
+    return dynamics_.snapshot(dy_.data());
+  };
+  const std::vector<double> middle = extremes_->values(earlier(before));
+  extremes_->finish_bends(middle, earlier(2.0 * before), before);
 }
 
 // Records in statistics_ that a time step has averaged part of a load: bodies receive its impulse, but no force or acceleration shows its

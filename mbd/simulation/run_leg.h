@@ -71,6 +71,7 @@ private:
   // `impacts`: State::impacts before the impacts at the start
   void project_and_set_up(const PowerLedger* before, const std::vector<Impact>& impacts);
   void finish_extremes();
+  void finish_bends(double t, const std::vector<double>& end, const std::vector<double>& rates);
   void keep_growth(double t, bool is_last);
   [[nodiscard]] bool is_action_due(std::size_t known);
   [[nodiscard]] bool try_advance();

@@ -442,15 +442,19 @@ void RequestedChannels::add_formulas() {
 
 // --- names that match nothing ---------------------------------------------------------------------
 
+std::unique_ptr<System> compile_with_all_channels(Model model) {
+  model.output.also = {"*"};
+  return compile(model);
+}
+
 // Returns the names of all channels that could be requested.
 std::vector<std::string> RequestedChannels::all_names() const {
   std::vector<std::string> names;
   for (const DefinedChannel& d : model_.channels) names.push_back(d.name);
   Model everything = model_;
   everything.channels.clear();
-  everything.output.also = {"*"};
   try {
-    const std::unique_ptr<System> system = compile(everything);
+    const std::unique_ptr<System> system = compile_with_all_channels(std::move(everything));
     for (const Channel& channel : system->channels) names.push_back(channel.name);
   } catch (const ModelError&) { // reported when the model itself is compiled
   }

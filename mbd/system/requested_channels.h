@@ -10,6 +10,7 @@
 #include "mbd/formula/formula.h"
 #include "mbd/system/system.h"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -84,5 +85,8 @@ private:
   std::size_t operations_ = 0; ///< number of operations of all formulas; a formula includes those of the formulas that it uses
   bool is_beyond_limits_ = false;
 };
+
+/// Compiles a completed model with all channels that it could request. Throws ModelError, also for names that are ambiguous only then.
+[[nodiscard]] std::unique_ptr<System> compile_with_all_channels(Model model);
 
 } // namespace steplap

@@ -164,6 +164,7 @@ std::string unshared_planes(const std::vector<DrivenModel>& models, const std::v
     std::string friction;
     char axis = ' '; ///< the record's axis along it
   };
+  if (models.size() < 2) return {};
   constexpr double k_floor = 0.7;           // least cosine between gravity and the normal of a contact that carries weight
   std::vector<std::optional<Floor>> floors; // per model, its first
   for (const DrivenModel& model : models) {

@@ -3,6 +3,7 @@
 #include "mbd/base/name_pattern.h"
 #include "mbd/io/csv.h"
 #include "mbd/run/run.h"
+#include "mbd/system/requested_channels.h"
 #include "tools/steplap/output_files.h"
 #include "tools/steplap/text_table.h"
 #include "transformer/program.h"
@@ -29,13 +30,6 @@ struct ListedChannel {
   const Channel* channel;
   const char* made; ///< "written", "not written" or "on request"
 };
-
-// Returns a system with all channels that the model has or could request.
-std::unique_ptr<System> with_all_channels(const Model& model) {
-  Model all = model;
-  all.output.also = {"*"};
-  return compile(all);
-}
 
 std::vector<ListedChannel> list_channels(const LoadedModel& loaded, const System& all, const std::vector<std::string>& patterns) {
   const Trajectory trajectory(*loaded.system, loaded.model.output.channels);
@@ -80,7 +74,7 @@ void print_channels(std::ostream& out, const LoadedModel& loaded, const std::vec
 ExitCode channels(const ChannelsOptions& options, Console& console) {
   const OutputFiles files(console, {{"-o", options.output}}, options.is_overwriting);
   const auto loaded = load_model(options.model, options.overrides);
-  const std::unique_ptr<System> all = with_all_channels(loaded->model);
+  const std::unique_ptr<System> all = compile_with_all_channels(loaded->model);
   const std::vector<ListedChannel> list = list_channels(*loaded, *all, options.patterns);
   if (list.empty()) {
     std::vector<std::string> known;

@@ -12,6 +12,7 @@
 #include "mbd/model/completion.h"
 #include "mbd/model/model_path.h"
 #include "mbd/model/validate.h"
+#include "mbd/system/requested_channels.h"
 #include "tools/study/case_limits.h"
 #include "tools/study/expression.h"
 #include "tools/study/history.h"
@@ -347,9 +348,7 @@ private:
 
   static bool is_on_request(const Response& r, const StudyModel& model) {
     try {
-      Model everything = completed(model.given);
-      everything.output.also = {"*"};
-      return !channels_of(r, *compile(everything)).empty();
+      return !channels_of(r, *compile_with_all_channels(completed(model.given))).empty();
     } catch (const ModelError&) { // the error is reported when the model is read
       return false;
     }

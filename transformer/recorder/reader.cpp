@@ -13,9 +13,8 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_hole = 1.5;   // time step, in sampling intervals, above which a row is missing
-constexpr double k_early = 0.3;  // part of an interval by which a row must be early to compensate for a late row before it
-constexpr double k_bends = 0.95; // part of the sensor's range at which amplifiers begin to saturate
+constexpr double k_hole = 1.5;  // time step, in sampling intervals, above which a row is missing
+constexpr double k_early = 0.3; // part of an interval by which a row must be early to compensate for a late row before it
 constexpr std::size_t k_head_lines = 5000, k_head_bytes = std::size_t{1} << 20U;
 
 // Detects clipping: sequences of equal samples at the extreme value of an axis. A smooth peak is entered and left by single steps of the
@@ -484,7 +483,7 @@ private:
     const bool is_at_rest = t >= rest[0] && t <= rest[1];
     for (std::size_t i = 0; i < layout_->axes.size(); ++i) {
       watches_[i].take(a[i], line);
-      if (layout_->range && std::abs(a[i]) >= k_bends * *layout_->range) facts.axes[i].beyond_range.note(line);
+      if (layout_->range && std::abs(a[i]) >= k_saturates * *layout_->range) facts.axes[i].beyond_range.note(line);
       if (is_at_rest) sums_[i] += a[i];
     }
     summed_ += is_at_rest;

@@ -29,6 +29,9 @@ public:
   virtual void end_segment() = 0;
 };
 
+/// Share of the sensor's range at which amplifiers begin to saturate.
+inline constexpr double k_saturates = 0.95;
+
 /// Number of occurrences with the line of the first.
 struct Counted {
   std::size_t count = 0, line = 0;

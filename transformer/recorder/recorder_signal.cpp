@@ -207,18 +207,29 @@ Signal signal_of(const Recorder& r, const Window& window, const std::array<doubl
   return signal;
 }
 
-// Adds a doubt for each axis in the signal that was cut off by the recorder's range within the window.
-void doubt_clipped(const Recording& recording, const Window& window, const std::array<double, 3>& direction, Signal& signal) {
-  constexpr double k_at_top = 0.9; // of the clipped value, relative to rest: the window holds samples there
-  for (std::size_t i = 0; i < recording.layout.axes.size(); ++i) {
+// Adds a doubt for each axis of the signal with samples within the window that were cut off by the recorder's range.
+void doubt_clipped(const Recording& recording, const Samples& samples, const Window& window, const std::array<double, 3>& direction,
+                   Signal& signal) {
+  const RecordLayout& layout = recording.layout;
+  for (std::size_t i = 0; i < layout.axes.size(); ++i) {
+    if (direction[i] == 0.0) continue;
     const AxisFacts& facts = recording.facts.axes[i];
-    if (direction[i] == 0.0 || recording.layout.holds || facts.flat_longest < 3) continue;
-    const double top = std::abs(facts.flat_value - facts.rest);
-    const auto& values = window.filtered[i];
-    if (std::none_of(values.begin(), values.end(), [&](double a) { return std::abs(a) > k_at_top * top; })) continue;
-    signal.add_doubt(signal.breakpoints().front(),
-                     std::string("axis ") + recording.layout.axes[i].axis + " stays at " + rounded_text(facts.flat_value / k_gravity, 3) +
-                         " g for " + std::to_string(facts.flat_longest) + " samples: it is clipped, and its peaks were higher");
+    const bool has_flat_top = facts.flat_longest >= 3 && !layout.holds;
+    std::size_t clipped = 0;
+    double top = 0.0;
+    for (const Samples::Segment& segment : samples.segments)
+      for (const Samples::Row& row : segment.rows) {
+        if (row.t < window.times.front() || row.t > window.times.back()) continue;
+        const bool saturates = layout.range && std::abs(row.a[i]) >= k_saturates * *layout.range;
+        if (!saturates && !(has_flat_top && row.a[i] == facts.flat_value)) continue;
+        ++clipped;
+        top = row.a[i];
+      }
+    if (clipped > 0)
+      signal.add_doubt(signal.breakpoints().front(), std::string("axis ") + layout.axes[i].axis + " is at " +
+                                                         rounded_text(top / k_gravity, 3) + " g in " +
+                                                         counted(clipped, "sample", "samples") +
+                                                         ": it is clipped, and its peaks were higher. Take a recorder with a larger range");
   }
 }
 
@@ -257,7 +268,7 @@ Signal read_signal(const Recorder& r) {
   }
   const Window window = window_of(r, signal, events);
   Signal result = signal_of(r, window, direction);
-  doubt_clipped(recording, window, direction, result);
+  doubt_clipped(recording, samples, window, direction, result);
   return result;
 }
 

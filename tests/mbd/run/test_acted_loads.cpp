@@ -332,6 +332,19 @@ TEST_CASE("a slide that is braked when the run ends is open if it stops beyond i
   }
 }
 
+TEST_CASE("second derivatives at the end are those of the motion, however many periods the run has") {
+  // x'' = −ω² x, 3200 periods: a ten-thousandth of the run is a third of a period.
+  const Report report =
+      run_of("gravity = [0.0, 0.0]\nsimulation = { end = 200.3 }\noutput = { step = 1.0 }\n[[body]]\nname = \"b\"\nmass = "
+             "1.0\ninertia = 1.0\nvelocity = [50.0, 0.0]\n[[element]]\nkind = \"prismatic\"\nname = \"rail\"\na = "
+             "\"b\"\n[[element]]\nkind = \"spring_damper\"\nname = \"s\"\na = \"b\"\naxis = [1.0, 0.0]\nstiffness = "
+             "1e4\nfree_length = 0.0\n[[acceptance]]\nname = \"stays\"\nchannel = \"b.x\"\nwithin = 0.9\n");
+  const auto& ranges = report.ranges();
+  const auto x = std::find_if(ranges.begin(), ranges.end(), [](const ChannelRange& range) { return range.channel->name == "b.x"; });
+  REQUIRE(x != ranges.end());
+  CHECK(std::abs(x->final_bend + 1e4 * x->final) < 0.1 * 1e4 * 0.5); // over a tenth of a step accelerations change by less
+}
+
 TEST_CASE("a swing that builds up by itself is open until it repeats") {
   // x'' − 2 x' + 100 x = 0 from 1 mm/s: amplitude 0.1 mm exp(t), 14.8 mm at 5 s. With 2 x' instead it decays from the first swing on.
   const auto scene = [](const std::string& push, double within) {

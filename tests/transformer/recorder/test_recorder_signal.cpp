@@ -119,16 +119,19 @@ TEST_CASE("a record that is clipped or ends within an event leaves a doubt") {
     }
     return text;
   };
-  const auto doubts = [](const RecordOnDisk& file, double from) {
+  const auto doubts = [](const RecordOnDisk& file, double from, const Values& more = {}) {
     std::string all;
-    const Signal signal = made(file, {{"axis", text("x")}, {"from", from}});
+    Values values = {{"axis", text("x")}, {"from", from}};
+    values.insert(values.end(), more.begin(), more.end());
+    const Signal signal = made(file, values);
     for (const Signal::Doubt& doubt : signal.doubts()) all += doubt.text + ". ";
     return all;
   };
   const RecordOnDisk whole("whole.csv", record(10.0, 1.0)), clipped("clipped.csv", record(1.0, 1.0)), cut("cut.csv", record(10.0, 0.55));
   CHECK(doubts(whole, 0.0) == "");
-  CHECK(doubts(clipped, 0.0).find("axis x stays at 1 g") != std::string::npos);
-  CHECK(doubts(clipped, 0.7) == ""); // the window begins after the pulse
+  CHECK(doubts(clipped, 0.0).find("axis x is at 1 g") != std::string::npos);
+  CHECK(doubts(clipped, 0.0, {{"cfc", 10.0}}).find("axis x is at 1 g") != std::string::npos); // a filter hides the top
+  CHECK(doubts(clipped, 0.7) == "");                                                          // the window begins after the pulse
   CHECK(doubts(cut, 0.0).find("ends at 100 % of its largest value") != std::string::npos);
 }
 
