@@ -57,11 +57,11 @@ public:
   }
 
   // Elements and bodies become text one by one, because their trees take ten times as much memory.
-  std::string text() {
-    std::string elements;
-    append_list(elements, model_.elements, [this](const ElementEntry& entry) { return element_json(entry); });
-    std::string text = "{\"bodies\":"; // must follow the elements, which define geometry of bodies
-    append_list(text, model_.bodies, [this](const Body& body) { return body_json(body); });
+  void write(const FileSink& put) {
+    put("{\"elements\":"); // before the bodies, whose geometry they define
+    write_list(model_.elements, put, [this](const ElementEntry& entry) { return element_json(entry); });
+    put(",\"bodies\":");
+    write_list(model_.bodies, put, [this](const Body& body) { return body_json(body); });
     Json json = object_with_room(8);
     append(json, "ground") = ground_json();
     append(json, "planes") = planes_;
@@ -71,16 +71,23 @@ public:
     append(json, "looks") = looks_json();
     append(json, "seen_from") = model_.output.seen_from;
     append(json, "gravity") = point_json(model_.header.gravity);
-    return text.append(",\"elements\":").append(elements).append(",").append(text_of(json), 1);
+    put("," + text_of(json).substr(1) + "\n");
   }
 
 private:
   // Invalid UTF-8 in names is replaced.
   [[nodiscard]] static std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-  template <class Entries, class Make> static void append_list(std::string& text, const Entries& entries, const Make& make) {
+  template <class Entries, class Make> static void write_list(const Entries& entries, const FileSink& put, const Make& make) {
+    constexpr std::size_t k_piece = 1 << 16; // bytes
+    std::string piece;
     const char* before = "[";
-    for (const auto& entry : entries) text.append(std::exchange(before, ",")).append(text_of(make(entry)));
-    text.append(entries.empty() ? "[]" : "]");
+    for (const auto& entry : entries) {
+      piece.append(std::exchange(before, ",")).append(text_of(make(entry)));
+      if (piece.size() < k_piece) continue;
+      put(piece);
+      piece.clear();
+    }
+    put(piece.append(entries.empty() ? "[]" : "]"));
   }
   [[nodiscard]] Json cores_json() const {
     Json cores = Json::array();
@@ -310,6 +317,12 @@ private:
 
 } // namespace
 
-std::string drawing_json(const Model& model, const KindViews& views) { return Drawing(model, views).text() + "\n"; }
+void write_drawing(const Model& model, const KindViews& views, const FileSink& put) { Drawing(model, views).write(put); }
+
+std::string drawing_json(const Model& model, const KindViews& views) {
+  std::string text;
+  write_drawing(model, views, [&text](std::string_view piece) { text += piece; });
+  return text;
+}
 
 } // namespace steplap

@@ -2,6 +2,7 @@
 // of step-lap joints, and the figures that the model requests.
 #pragma once
 
+#include "mbd/io/atomic_file.h"
 #include "mbd/model/model.h"
 #include "mbd/run/kind_views.h"
 
@@ -9,7 +10,7 @@
 
 namespace steplap {
 
-/// Returns a JSON text. All values are SI, and all points are in the axes of their body about its centre of gravity:
+/// Writes a JSON text, piece by piece. All values are SI, and all points are in the axes of their body about its centre of gravity:
 ///
 ///   bodies    name, label, pose [x, y, θ] in the reference pose, fixed, outline [[x, y], …],
 ///             is_outline_given; circles [x, y, radius, 1 if open inside], segments [x, y, x, y, thickness]
@@ -29,6 +30,8 @@ namespace steplap {
 ///
 /// A body without a given outline gets the convex hull of its centre of gravity and of the points of elements that none of its circles
 /// covers; it has no outline if there is no such point. No size is derived from masses or inertias. Precondition: the model is valid.
+void write_drawing(const Model& model, const KindViews& views, const FileSink& put);
+/// Returns the text of write_drawing().
 [[nodiscard]] std::string drawing_json(const Model& model, const KindViews& views);
 
 } // namespace steplap

@@ -233,12 +233,13 @@ FileContent whole(std::string text) {
   return [text = std::move(text)](const FileSink& put) { put(text); };
 }
 
+std::string model_file_head(const LoadedModel& loaded) {
+  return "# Effective model of '" + loaded.path + "', written by steplap " + k_version + ".\n\n";
+}
+
 } // namespace
 
-std::string model_file_text(const LoadedModel& loaded) {
-  if (loaded.text.empty()) return "";
-  return "# Effective model of '" + loaded.path + "', written by steplap " + k_version + ".\n\n" + loaded.text;
-}
+std::string model_file_text(const LoadedModel& loaded) { return loaded.text.empty() ? "" : model_file_head(loaded) + loaded.text; }
 
 std::vector<ResultFile> result_files(const Report& report) {
   const Run& run = report.run;
@@ -250,13 +251,17 @@ std::vector<ResultFile> result_files(const Report& report) {
   const auto rows = [&run, errors = column_errors(report)](const FileSink& put) {
     write_trajectory_csv(*run.result.trajectory, errors, put);
   };
+  const auto model = [&run](const FileSink& put) {
+    put(model_file_head(*run.loaded));
+    put(run.loaded->text);
+  };
+  const auto drawing = [&run](const FileSink& put) { write_drawing(run.loaded->model, *run.loaded->views, put); };
   const auto records = std::make_shared<FileRecords>();
   const auto events = events_csv(run.result.events, report.estimate.errors ? &report.estimate.errors->event_times : nullptr);
   return {noted(prefix + "trajectory.csv", rows, records),
           noted(prefix + "events.csv", whole(events), records),
-          noted(prefix + "model.toml", whole(model_file_text(*run.loaded)), records),
-          noted(
-              prefix + "drawing.json", [&run](const FileSink& put) { put(drawing_json(run.loaded->model, *run.loaded->views)); }, records),
+          noted(prefix + "model.toml", model, records),
+          noted(prefix + "drawing.json", drawing, records),
           {prefix + "summary.json", "", [&report, records](const FileSink& put) { write_summary(report, *records, put); }}};
 }
 

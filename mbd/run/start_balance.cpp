@@ -28,7 +28,8 @@ StartBalance::StartBalance(const System& system, const State& state) : state_(st
     const BodyData& body = system.bodies[static_cast<std::size_t>(k / 3 + 1)];
     mass_[k] = k % 3 < 2 ? body.mass : body.inertia * scale_[k] * scale_[k];
   }
-  for (const auto& group : system.groups) group->add_jacobian(statics_.evaluation(), parts_);
+  if (system.contact_count > 0)
+    for (const auto& group : system.groups) group->add_jacobian(statics_.evaluation(), parts_);
   if (!statics_.rows().empty() && statics_.coordinates() <= k_most_dense) {
     const OneThread alone;
     free_ = tangent_of(statics_, scale_).free;

@@ -37,11 +37,11 @@ private:
 
   State state_;
   Statics statics_;
-  VecX scale_, mass_; ///< scales of the coordinates; masses of the scaled coordinates
-  MatX free_;         ///< basis of the scaled motions that the joints permit; empty: all motions
-  MatX inverse_;      ///< inverse of the mass matrix in the basis free_
-  VecX all_, loads_;  ///< accelerations under all forces, and under the forces other than contact forces
-  std::vector<PairJacobian> parts_;
+  VecX scale_, mass_;               ///< scales of the coordinates; masses of the scaled coordinates
+  MatX free_;                       ///< basis of the scaled motions that the joints permit; empty: all motions
+  MatX inverse_;                    ///< inverse of the mass matrix in the basis free_
+  VecX all_, loads_;                ///< accelerations under all forces, and under the forces other than contact forces
+  std::vector<PairJacobian> parts_; ///< of all force elements; empty without contacts
 };
 
 } // namespace steplap

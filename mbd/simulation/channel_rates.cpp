@@ -18,6 +18,9 @@ std::vector<int> rates_of(const System& system) {
     const auto ends_it = [name](const auto& pair) { return name.ends_with(pair.first) || name.ends_with(pair.second); };
     return std::any_of(k_rates.begin(), k_rates.end(), ends_it) || std::any_of(k_requested.begin(), k_requested.end(), ends_it);
   };
+  std::vector<int> rates(system.channels.size(), -1);
+  if (std::none_of(system.channels.begin(), system.channels.end(), [](const Channel& channel) { return channel.has_extremes; }))
+    return rates;
   std::unordered_map<std::string_view, int> place;
   for (std::size_t c = 0; c < system.channels.size(); ++c)
     if (is_motion(system.channels[c].name)) place.emplace(system.channels[c].name, static_cast<int>(c));
@@ -26,7 +29,6 @@ std::vector<int> rates_of(const System& system) {
     asked.assign(of).append(value);
     return place.find(asked);
   };
-  std::vector<int> rates(system.channels.size(), -1);
   for (const BodyData& body : system.bodies)
     for (const auto& [value, rate] : k_rates) {
       const auto of = find(body.name, value);

@@ -60,13 +60,14 @@ std::vector<std::size_t> searched_channels(const System& system) {
 const Extreme& ChannelRange::largest() const { return std::abs(low.value) > std::abs(high.value) ? low : high; }
 
 ExtremeFinder::ExtremeFinder(const System& system, int max_dimension)
-    : system_(system), ranges_(system.channels.size()), searched_(searched_channels(system)), count_(searched_.size()), kind_(count_),
-      screened_slot_(count_, -1), rate_of_(count_, k_no_rate), before_(count_, k_unknown),
-      node_(k_nodes, std::vector<double>(count_, k_unknown)), curve_(count_), curvature_(count_, 0.0), step_t_(k_longest + 1),
-      stride_(static_cast<std::size_t>(max_dimension)), y_(stride_), dy_(stride_), scratch_(count_), faces_(system) {
+    : system_(system), searched_(searched_channels(system)), count_(searched_.size()), kind_(count_), screened_slot_(count_, -1),
+      rate_of_(count_, k_no_rate), before_(count_, k_unknown), node_(k_nodes, std::vector<double>(count_, k_unknown)), curve_(count_),
+      curvature_(count_, 0.0), step_t_(k_longest + 1), stride_(static_cast<std::size_t>(max_dimension)), y_(stride_), dy_(stride_),
+      scratch_(count_), faces_(system) {
   step_y_.resize(stride_ * (k_longest + 1));
   step_k_.resize(stride_ * (k_longest + 1));
-  for (std::size_t i = 0; i < ranges_.size(); ++i) ranges_[i].channel = &system.channels[i];
+  ranges_.reserve(system.channels.size());
+  for (const Channel& channel : system.channels) ranges_.emplace_back().channel = &channel;
   const std::vector<int> rates = rates_of(system);
   for (std::size_t c = 0; c < count_; ++c) {
     const Channel& channel = *range(c).channel;

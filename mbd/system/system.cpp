@@ -325,6 +325,10 @@ void SystemBuilder::add_body_channels() {
   const auto enter = [this](const std::string& name, const Coordinate& c, std::function<double(const Snapshot&)> value) {
     enter_channel(use_of(name, c.name, false), name, c.name, c.unit, {c.meaning, c.sign}, std::move(value));
   };
+  // Room for the channels of a large scene: a vector that grows would touch twice the memory.
+  constexpr std::size_t k_of_body = 9, k_of_element = 4;
+  if (!wanted_ && model_.output.channels.empty())
+    system_->channels.reserve(k_of_body * model_.bodies.size() + k_of_element * model_.elements.size());
   for (int i = 1; i < system_->body_count(); ++i) {
     const std::string& name = system_->bodies[i].name;
     for (const Coordinate& c : coordinates)
