@@ -18,7 +18,7 @@ void add_row(RowSpec row, SystemBuilder& builder) {
   const int r = builder.next_row();
   builder.add_channel("force", "N",
                       {"force between the teeth, on a", "along the common tangent, as a's rim moves when it turns counter-clockwise"},
-                      [r](const Snapshot& s) { return s.row_force[r]; });
+                      [r, sign = row.radius_a < 0.0 ? -1.0 : 1.0](const Snapshot& s) { return sign * s.row_force[r]; });
   builder.offer_channel("power", "W", "power of the constraint: zero up to numerical error",
                         [row, r](const Snapshot& s) { return s.row_force[r] * evaluate_row<false>(row, s.motion).rate; });
   builder.add_rows({row});

@@ -192,21 +192,29 @@ template <class S> struct RelativeVelocity {
 
 namespace overlap_detail {
 
-// Integrals ∫ 1, τ, τ², ν over a polygon, with τ and ν the coordinates across and along n. The last two only if asked for.
+// Integrals ∫ 1, τ, τ² over a polygon, with τ the coordinate across n, and ∫ ν, with ν the coordinate along n from its first corner. The
+// last two only if asked for.
 template <class S> struct CellSums {
   S area{0}, across{0}, across2{0}, along{0};
 };
 
+// Sums over triangles from the first corner: triangles from a distant origin would cancel, and the cells at the ends of a thin overlap are
+// as small as the depth squared.
 template <class S> CellSums<S> sums_of(const CutRing<S>& ring, const Pair<S>& n, bool has_square, bool has_along) {
   CellSums<S> sums;
-  for (int i = 0; i < ring.size; ++i) {
-    const Pair<S>&p = ring.corner[i], &q = ring.corner[i + 1 < ring.size ? i + 1 : 0];
+  if (ring.size < 3) return sums;
+  const Pair<S>& first = ring.corner[0];
+  for (int i = 1; i + 1 < ring.size; ++i) {
+    const Pair<S> p = ring.corner[i] - first, q = ring.corner[i + 1] - first;
     const S twice = cross(p, q), s = cross(p, n), t = cross(q, n);
     sums.area += S(0.5) * twice;
     sums.across += S(1.0 / 6.0) * twice * (s + t);
     if (has_square) sums.across2 += S(1.0 / 12.0) * twice * (s * s + s * t + t * t);
     if (has_along) sums.along += S(1.0 / 6.0) * twice * (dot(p, n) + dot(q, n));
   }
+  const S aside = cross(first, n);
+  if (has_square) sums.across2 += aside * (S(2) * sums.across + aside * sums.area);
+  sums.across += aside * sums.area;
   return sums;
 }
 
@@ -272,7 +280,7 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
     const Pair<S> n = S(is_a ? -1.0 : 1.0) * line[i].normal; // direction of the force on a
     const auto whole = overlap_detail::sums_of(*source, n, dissipation != 0.0, has_volume);
     const S closing = -dot(u, n), turning = -velocity.spin; // c = closing + turning τ
-    if (has_volume) result.volume += line[i].offset * whole.area + (is_a ? whole.along : -whole.along);
+    if (has_volume) result.volume += line[i].depth(source->corner[0]) * whole.area + (is_a ? whole.along : -whole.along);
     if (is_elastic) {
       result.force = result.force + (S(2) * k * whole.area) * n;
       moment += S(2) * k * whole.across;

@@ -26,6 +26,8 @@ constexpr double k_nudge = 1e-3; // displacement out of an unstable equilibrium:
 constexpr double k_turned_against = 0.5;
 constexpr int k_most_measurements = 1000; // gap measurements along one step
 constexpr int k_most_halved_measurements = 40;
+// Way of a friction row, as a fraction of the model's size, and turn, rad, up to which its bodies are near their first touch.
+constexpr double k_near_way = 1e-2, k_near_turn = 0.1;
 constexpr double k_touch = 64.0; // depth to which a landing body penetrates, in rounding errors of the largest coordinate
 constexpr int k_most_trials = 44, k_most_corrections = 4, k_most_projections = 25, k_most_polishing = 4;
 constexpr int k_most_dense = 90; // number of coordinates above which sparse algebra is faster
@@ -44,11 +46,18 @@ constexpr long k_most_evaluations = 200'000;
 
 Descent::Descent(const System& system, State& state, RestAlgebra algebra)
     : system_(system), state_(state), statics_(system), n_(statics_.coordinates()), start_(state.q),
-      hold_(system.frictions.size(), Hold::none) {
+      hold_(system.frictions.size(), Hold::none), touch_(system.frictions.size()) {
   std::fill(state_.v.begin(), state_.v.end(), 0.0);
   for (std::size_t f = 0; f < hold_.size(); ++f) {
     const FrictionPhase phase = state.friction[f].phase;
     hold_[f] = phase == FrictionPhase::stick ? Hold::sticks : phase == FrictionPhase::slip ? Hold::slides : Hold::none;
+  }
+  std::vector<Motion<double>> placed;
+  place_bodies(state.q, state.v, placed);
+  for (std::size_t f = 0; f < hold_.size(); ++f) {
+    if (hold_[f] != Hold::sticks) continue;
+    const RowSpec& row = *system.frictions[f].friction->rows(state.friction[f]);
+    touch_[f] = {row.a, row.b, placed[static_cast<std::size_t>(row.a)], placed[static_cast<std::size_t>(row.b)], false};
   }
   measure_scene();
   is_sparse_ = algebra == RestAlgebra::sparse || (algebra == RestAlgebra::by_size && n_ > k_most_dense);
@@ -320,8 +329,37 @@ bool Descent::advance(VecX step) {
   return true;
 }
 
-// Updates friction after a step from the poses `from`. An element that gains normal force, or whose slip reverses, sticks at the present
-// pose; one without normal force is released.
+// Returns true if the bodies of a friction element are so near their first touch that rocking from corner to corner explains the way.
+bool Descent::is_near_touch(int f) const {
+  const Touch& touch = touch_[static_cast<std::size_t>(f)];
+  const RowSpec& row = *system_.frictions[f].friction->rows(state_.friction[f]);
+  const bool is_same = touch.a == row.a && touch.b == row.b, is_swapped = touch.a == row.b && touch.b == row.a;
+  if (touch.a < 0 || !(is_same || is_swapped) || system_.frictions[f].friction->dimension() > 1) return false;
+  const std::vector<Motion<double>>& now = statics_.motion();
+  const double turn = now[touch.a].theta - now[touch.b].theta - (touch.at_a.theta - touch.at_b.theta);
+  const double was = evaluate_row<false>(row, at_touch_.data()).value, is = evaluate_row<false>(row, now.data()).value;
+  return std::abs(turn) <= k_near_turn && std::abs(is - was) <= k_near_way * length_;
+}
+
+// Anchors sticking friction. Rocking from one contact point to another on the way to the rest must not make it slide. In a small change of the
+// loads every pose on the way is one of the machine.
+void Descent::anchor(int f, bool is_switched) {
+  Touch& touch = touch_[static_cast<std::size_t>(f)];
+  const std::vector<Motion<double>>& now = statics_.motion();
+  touch.has_switched = touch.has_switched || is_switched;
+  if (touch.a >= 0 && touch.has_switched && !keeps_directions_) {
+    at_touch_.assign(now.begin(), now.begin() + system_.body_count());
+    at_touch_[touch.a] = touch.at_a;
+    at_touch_[touch.b] = touch.at_b;
+    if (is_near_touch(f)) return anchor_friction(system_, state_, f, at_touch_.data());
+  }
+  const RowSpec& row = *system_.frictions[f].friction->rows(state_.friction[f]);
+  touch = {row.a, row.b, now[row.a], now[row.b], touch.has_switched};
+  anchor_friction(system_, state_, f, now.data());
+}
+
+// Updates friction after a step from the poses `from`. An element that gains normal force, or whose slip reverses, sticks; one without normal
+// force is released.
 void Descent::follow_friction(const std::vector<double>& from) {
   statics_.evaluate(state_);
   bool is_changed = false, is_moved = false;
@@ -342,14 +380,15 @@ void Descent::follow_friction(const std::vector<double>& from) {
       const double slid = evaluate_row<false>(row, statics_.motion().data()).value - was;
       if (slid * friction.sign >= -1e-9 * length_) continue;
       friction.phase = FrictionPhase::stick;
-      anchor_friction(system_, state_, f, statics_.motion().data());
+      touch_[f].a = -1; // it has slid
+      anchor(f, false);
       hold_[f] = Hold::sticks;
     } else {
       const bool is_displaced = element.contact_point_event(statics_.evaluation(), friction) < 0.0;
       if (is_displaced) element.switch_contact_point(statics_.evaluation(), friction);
       if (friction.phase == FrictionPhase::apart) continue;
       friction.phase = FrictionPhase::stick;
-      if (is_displaced || hold_[f] != Hold::sticks) anchor_friction(system_, state_, f, statics_.motion().data());
+      if (is_displaced || hold_[f] != Hold::sticks) anchor(f, is_displaced);
       hold_[f] = Hold::sticks;
       is_moved = is_moved || is_displaced;
     }

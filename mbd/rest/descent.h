@@ -28,7 +28,8 @@ enum class DescentEnd {
 class Descent {
 public:
   /// Changes poses, modes and friction phases of `state`. A friction element that gains normal force sticks at that pose, one that loses it
-  /// is released, and one that slips continues until its motion reverses.
+  /// is released, and one that slips continues until its motion reverses. Friction along a line that changes its contact point holds
+  /// the pose of its first touch, unless its bodies have moved far from there.
   Descent(const System& system, State& state, RestAlgebra algebra = RestAlgebra::by_size);
 
   DescentEnd run();
@@ -78,6 +79,8 @@ private:
   [[nodiscard]] bool loads_friction() const;
   [[nodiscard]] double first_load(const std::vector<double>& from, const VecX& step, double low, double high);
   void follow_friction(const std::vector<double>& from);
+  [[nodiscard]] bool is_near_touch(int f) const;
+  void anchor(int f, bool is_switched);
   void find_dependent_friction();
   [[nodiscard]] bool has_run_away();
   bool polish();
@@ -101,8 +104,16 @@ private:
   int most_iterations_ = 0;
   bool keeps_directions_ = false; ///< of sliding friction
   double residual_ = 0.0;
-  std::vector<Hold> hold_;     ///< per friction element
-  std::vector<char> left_out_; ///< for each friction row: left out, since it depends on other sticking rows
+  std::vector<Hold> hold_; ///< per friction element
+  /// Poses of the two bodies of a friction row when they first touched.
+  struct Touch {
+    int a = -1, b = -1; ///< bodies; −1: they have not touched, or have slid since
+    Motion<double> at_a, at_b;
+    bool has_switched = false; ///< the contact point has changed in this search
+  };
+  std::vector<Touch> touch_;             ///< per friction element
+  std::vector<Motion<double>> at_touch_; ///< scratch of anchor(): the bodies, two of them at their touch
+  std::vector<char> left_out_;           ///< for each friction row: left out, since it depends on other sticking rows
   std::vector<MotionPart> indifferent_, left_;
   MotionPart runaway_;
   double driving_force_ = 0.0;

@@ -31,7 +31,6 @@ constexpr double k_on_rows = 1e-12;            // m, rad
 constexpr std::size_t k_most_rope_changes = 8; // per rope
 constexpr double k_short = 0.999;
 constexpr int k_most_slips = 12;   // of one friction element before the search fails
-constexpr double k_tipped = 0.75;  // rad of rotation from which a body counts as tipped over
 constexpr int k_most_shared = 150; // coordinates of the largest model for which all admissible friction forces are searched
 // Fraction of the model's size. If contacts slid further, held by friction alone, the machine did not stand.
 constexpr double k_stands = 1e-2;
@@ -665,32 +664,13 @@ private:
     throw ElementFailure(text, std::move(names));
   }
 
-  // Returns for each body whether joints connect it to the ground.
-  [[nodiscard]] std::vector<char> led_bodies() const {
-    std::vector<std::vector<int>> joined(system_.bodies.size());
-    for (const RowSpec& row : system_.rows) {
-      joined[row.a].push_back(row.b);
-      joined[row.b].push_back(row.a);
-    }
-    std::vector<char> is_led(system_.bodies.size(), 0);
-    std::vector<int> next{k_ground};
-    is_led[k_ground] = 1;
-    while (!next.empty()) {
-      const int body = next.back();
-      next.pop_back();
-      for (const int other : joined[body])
-        if (std::exchange(is_led[other], char{1}) == 0) next.push_back(other);
-    }
-    return is_led;
-  }
-
   // Records the body without joints to the ground that turned furthest, if it tipped over.
   void note_tipping() {
     if (system_.contact_count == 0) return;
-    const std::vector<char> is_led = led_bodies();
+    const std::vector<char> is_led = led_bodies(system_);
     for (int i = 1; i < system_.body_count(); ++i) {
       const double turn = state_.q[3 * i + 2] - start_.q[3 * i + 2];
-      if (is_led[i] || std::abs(turn) < k_tipped || std::abs(turn) < std::abs(result_.turned)) continue;
+      if (is_led[i] || std::abs(turn) < k_overturned || std::abs(turn) < std::abs(result_.turned)) continue;
       result_.turned = turn;
       result_.turned_body = i;
     }
@@ -762,6 +742,24 @@ std::vector<std::string> remarks_on(const System& system, const Equilibrium& fou
     remarks.push_back("the drive '" + system.element_names[element] +
                       "' moves or accelerates at this time: this is the rest of the machine with the drive held");
   return remarks;
+}
+
+std::vector<char> led_bodies(const System& system) {
+  std::vector<std::vector<int>> joined(system.bodies.size());
+  for (const RowSpec& row : system.rows) {
+    joined[row.a].push_back(row.b);
+    joined[row.b].push_back(row.a);
+  }
+  std::vector<char> is_led(system.bodies.size(), 0);
+  std::vector<int> next{k_ground};
+  is_led[k_ground] = 1;
+  while (!next.empty()) {
+    const int body = next.back();
+    next.pop_back();
+    for (const int other : joined[body])
+      if (std::exchange(is_led[other], char{1}) == 0) next.push_back(other);
+  }
+  return is_led;
 }
 
 Equilibrium find_equilibrium(const System& system, const State& start, RestAlgebra algebra) {

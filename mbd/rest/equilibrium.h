@@ -47,6 +47,10 @@ struct Equilibrium {
 /// would move. `algebra` selects dense or sparse matrices, for tests that compare the two.
 [[nodiscard]] Equilibrium find_equilibrium(const System& system, const State& start, RestAlgebra algebra = RestAlgebra::by_size);
 
+/// Rotation, rad, from which a body without joints to the ground counts as overturned.
+inline constexpr double k_overturned = 0.75;
+/// Returns for each body whether joints connect it to the ground.
+[[nodiscard]] std::vector<char> led_bodies(const System& system);
 /// Returns the direction as text for messages: "'bob' along -x", "'bob' turning clockwise".
 [[nodiscard]] std::string part_text(const System& system, const MotionPart& part);
 /// Returns notes on an equilibrium, one sentence each: unstable equilibria that were left, directions without stiffness, elements that

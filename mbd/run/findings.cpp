@@ -348,6 +348,35 @@ std::optional<Finding> note_of_moves(const LoadedModel& loaded) {
                  {}};
 }
 
+// Finds the initial velocity, linear or angular, given for a body, of which assembly changed the largest share. The common velocity of
+// [simulation] is not meant for bodies that joints hold.
+std::optional<Finding> changed_velocity(const LoadedModel& loaded) {
+  constexpr double k_changed = 1e-2; // share; digits lost in the file are less
+  const System& system = *loaded.system;
+  const std::vector<double>&given = system.initial_state().v, &now = loaded.assembled.v;
+  std::optional<Finding> found;
+  double most = k_changed;
+  for (int i = 1; i < system.body_count(); ++i) {
+    const std::size_t k = 3 * static_cast<std::size_t>(i);
+    const Body* const body = loaded.model.find_body(system.bodies[i].name);
+    const auto look = [&](double size, double change, const char* what, double size_now, const char* unit) {
+      if (!(change > most * size)) return;
+      most = change / size;
+      found = Finding{"velocity_changed", FindingLevel::warning,
+                      "the joints do not permit the " + std::string(what) + " of " + quantity_text(size, unit) + " that '" + body->name +
+                          "' is given at the start, and change it to " + quantity_text(size_now, unit, size) +
+                          ": give all bodies of a mechanism velocities that fit its joints",
+                      body->where};
+    };
+    if (body && body->velocity != Vec2::Zero())
+      look(portable::hypot(given[k], given[k + 1]), portable::hypot(now[k] - given[k], now[k + 1] - given[k + 1]), "velocity",
+           portable::hypot(now[k], now[k + 1]), "m/s");
+    if (body && body->angular_velocity != 0.0)
+      look(std::abs(given[k + 2]), std::abs(now[k + 2] - given[k + 2]), "angular velocity", std::abs(now[k + 2]), "rad/s");
+  }
+  return found;
+}
+
 } // namespace
 
 std::vector<Finding> findings_before(const LoadedModel& loaded) {
@@ -356,6 +385,7 @@ std::vector<Finding> findings_before(const LoadedModel& loaded) {
   append(findings, start_findings(loaded));
   append(findings, implausible_findings(loaded));
   append(findings, idle_actions(loaded));
+  if (const std::optional<Finding> changed = changed_velocity(loaded)) findings.push_back(*changed);
   if (const std::optional<Finding> moved = note_of_moves(loaded)) {
     findings.push_back(*moved);
     for (const auto check : loaded.views->assembly_checks) append(findings, check(loaded));

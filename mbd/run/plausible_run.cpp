@@ -3,6 +3,7 @@
 #include "mbd/base/name_pattern.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/rest/equilibrium.h"
 #include "mbd/run/body_reach.h"
 #include "mbd/run/quantity_text.h"
 #include "mbd/run/range_index.h"
@@ -122,6 +123,13 @@ std::vector<Finding> distant_rest_findings(const LoadedModel& loaded, const RunR
   const System& system = *loaded.system;
   const std::vector<double> reaches = body_reaches(model);
   const RangeIndex ranges(result.ranges);
+  const std::vector<char> is_led = led_bodies(system);
+  const auto index_of = [&system](const Body& body) {
+    const auto found =
+        std::find_if(system.bodies.begin(), system.bodies.end(), [&](const BodyData& data) { return data.name == body.name; });
+    return static_cast<std::size_t>(found - system.bodies.begin()); // every movable body of the model is in the system
+  };
+  std::vector<Finding> findings;
   const Body* worst = nullptr;
   double most = 1.0, way = 0.0, turn = 0.0; // most: largest ratio of a body's motion to the permitted one; way, turn: motion of this body
   std::size_t count = 0;
@@ -136,6 +144,11 @@ std::vector<Finding> distant_rest_findings(const LoadedModel& loaded, const RunR
     const double moved = portable::hypot(x->first - given.x(), y->first - given.y()), turned = theta->first - given.z();
     const double share = std::max(moved / (k_moved_share * size), std::abs(turned) / k_turned);
     if (!(share > 1.0)) continue;
+    if (std::abs(turned) >= k_overturned && !is_led[index_of(body)])
+      findings.push_back({"start_overturned", FindingLevel::warning,
+                          "'" + body.name + "' turns by " + rounded_text(turned * 180.0 / std::numbers::pi, 3) +
+                              "° in the search for the rest in which the run begins: it does not stand as given",
+                          body.where});
     ++count;
     if (!(share > most)) continue;
     most = share;
@@ -144,11 +157,13 @@ std::vector<Finding> distant_rest_findings(const LoadedModel& loaded, const RunR
     turn = turned;
   }
   if (!worst) return {};
-  return {{"rest_far_from_poses", FindingLevel::note,
-           "the run begins at rest, which is far from the poses given for " + counted(count, "body", "bodies") + ", most of all for '" +
-               worst->name + "': it moves by " + quantity_text(way, "m", 1e-3) + " and turns by " + quantity_text(turn, "rad", 1e-3) +
-               " to get there. Check its pose, and stiffnesses and preloads of what carries it",
-           worst->where}};
+  findings.push_back({"rest_far_from_poses", FindingLevel::note,
+                      "the run begins at rest, which is far from the poses given for " + counted(count, "body", "bodies") +
+                          ", most of all for '" + worst->name + "': it moves by " + quantity_text(way, "m", 1e-3) + " and turns by " +
+                          quantity_text(turn, "rad", 1e-3) +
+                          " to get there. Check its pose, and stiffnesses and preloads of what carries it",
+                      worst->where});
+  return findings;
 }
 
 std::vector<Finding> distant_limit_findings(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {

@@ -74,4 +74,14 @@ const ActionGroup* action_group(const System& system) {
   return nullptr;
 }
 
+std::string action_met_at(const System& system, const State& state) {
+  const ActionGroup* const group = action_group(system);
+  if (!group) return "";
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  for (std::size_t i = 0; i < group->entries.size(); ++i)
+    if (group->entries[i].is_armed && group->holds(i, state, motion, true)) return group->entries[i].name;
+  return "";
+}
+
 } // namespace steplap

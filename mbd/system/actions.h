@@ -75,5 +75,7 @@ private:
 /// Returns the actions of the system; nullptr if it has none.
 [[nodiscard]] const ActionGroup* action_group(const System& system);
 [[nodiscard]] ActionGroup* action_group(System& system);
+/// Returns the name of the first armed action whose condition, a comparison or a time, is met at `state`; "" if there is none.
+[[nodiscard]] std::string action_met_at(const System& system, const State& state);
 
 } // namespace steplap

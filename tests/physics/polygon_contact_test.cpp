@@ -555,3 +555,42 @@ TEST_CASE("what lies wholly within the other feels nothing: a run says so and go
     CHECK(refusal(stone, method).find("'box on block' lies wholly within the other") != std::string::npos);
   }
 }
+
+// A box that friction holds at a sideways pull a leans on its contact, whose stiffness against turning is k w³/12 less m g h of the weight,
+// and stays where it stood: θ = −m a h/(k w³/12 − m g h), x = −h θ. On the way the search rocks it from corner to corner.
+TEST_CASE("a box rests where it stood, however it is pulled within its friction") {
+  const double k = 2e8, m = 1e4, h = 1.0, w = 2.0;
+  for (const double pull : {0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.28}) {
+    CAPTURE(pull);
+    double place[2] = {};
+    for (const int side : {0, 1}) {
+      const double a = (side == 0 ? pull : -pull) * k_g;
+      const Found found = settle("gravity = " + point(a, -k_g) + "\n" + text_of({"b", 0.0, h, w, 2.0 * h, 0.0, m, ""}) +
+                                 touch("b", "ground", "stiffness = " + number(k) + "; static_friction = 0.3"));
+      const double turned = -m * a * h / (k * w * w * w / 12.0 - m * k_g * h);
+      place[side] = found.rest.state.q[3];
+      CHECK(std::abs(found.rest.state.q[5] - turned) <= 1e-3 * std::abs(turned) + 1e-12); // the depth is 1e-4 of the width
+      CHECK(std::abs(place[side] + h * turned) <= 1e-3 * h * std::abs(turned) + 1e-12);
+      CHECK(found.rest.slid.empty());
+    }
+    CHECK(std::abs(place[0] + place[1]) < 1e-12);
+  }
+}
+
+// Cells at the ends of a contact that is 1e-7 of its width deep are triangles of 1e-14 of its square. Summed about a distant origin their
+// energy was off by 1e-7 J, more than the energy guard permits of a box at rest.
+TEST_CASE("a box at rest on a stiff slope keeps its energy") {
+  for (const double k : {1e9, 1e10, 1e11})
+    for (const double slope : {-0.19, -0.05, 0.0, 0.11, 0.24}) {
+      CAPTURE(k);
+      CAPTURE(slope);
+      const double w = 2.1, h = 1.8, c = std::cos(slope), s = std::sin(slope);
+      const Run r = run_from_rest(text_of({"b", -0.5 * s * h, 0.5 * c * h, w, h, slope, 50.0, ""}) +
+                                      "[[marker]]\nname = \"plane\"\nbody = \"ground\"\nat = [0, 0]\nangle = " + number(slope) + "\n" +
+                                      touch("b", "plane", "stiffness = " + number(k) + "; dissipation = 1.0; static_friction = 0.4"),
+                                  {"tsit5", 1e-9, 0.05, 0.0});
+      // The weight of 490 N moves by no more than the rounding of places, 1e-15 m; k A d of the contact rounds like k w d times that.
+      CHECK(r.result.statistics.energy_residual < 1e-10);
+      CHECK(r.result.statistics.energy_worst_step < 1.0);
+    }
+}

@@ -120,6 +120,23 @@ TEST_CASE("gears: a couple on one accelerates both, and the teeth bear what the 
   CHECK(std::abs(r.last("mesh.force")) == doctest::Approx(0.3 * alpha / 3.0 / 0.3).epsilon(1e-11));
 }
 
+// The teeth brake the gear that a couple drives, outside and inside alike: the force on its rim is against its motion.
+TEST_CASE("gears: the force of the teeth has the sign of the rim's motion, in a ring, too") {
+  for (const bool inside : {false, true}) {
+    const std::string place = inside ? "[0.2, 0.0]" : "[0.4, 0.0]";
+    const Run r =
+        run(k_no_gravity + body("small", "mass = 1.0; inertia = 0.02") + body("large", "mass = 4.0; inertia = 0.3; position = " + place) +
+                element("revolute", "pin 1", "a = 'small'") +
+                element("revolute", "pin 2", "a = 'large'; b = { body = 'ground', at = " + place + " }") +
+                element("gear", "mesh",
+                        std::string("a = 'small'; b = 'large'; radius_a = 0.1; radius_b = 0.3; inside = ") + (inside ? "true" : "false")) +
+                element("load", "drive", "at = 'small'; couple = 2.0"),
+            {"dop853", 1e-12, 1.0, 0.0});
+    const double alpha = 2.0 / (0.02 + 0.3 / 9.0);
+    CHECK(r.last("mesh.force") == doctest::Approx(-(2.0 - 0.02 * alpha) / 0.1).epsilon(1e-11));
+  }
+}
+
 // A planet between a ring that stands and a sun: Willis, ω_sun r_s + ... : with the carrier at Ω the sun turns
 // at Ω (1 + R/r_s) and the planet at −Ω (R − r_p)/r_p.
 TEST_CASE("gears: a planetary train obeys Willis' equation while its carrier goes round") {

@@ -108,6 +108,7 @@ OrderedJson proof_json(const StaticProof& proof, const std::string& sha256) {
                       {"largest_acceleration", number(proof.largest)},
                       {"unit", "m/s^2"},
                       {"not_asked", proof.unasked},
+                      {"capped_by", proof.caps},
                       {"assumptions", proof.assumptions},
                       {"cases", OrderedJson::array()},
                       {"polar", OrderedJson::array()}};

@@ -8,6 +8,7 @@
 #include "mbd/run/failure.h"
 #include "mbd/run/prominence.h"
 #include "mbd/run/rest_values.h"
+#include "mbd/system/actions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,6 +73,7 @@ const char* name_of(LimitKind kind) {
   case LimitKind::slips: return "slips";
   case LimitKind::slides: return "slides";
   case LimitKind::lifts: return "lifts";
+  case LimitKind::breaks: return "breaks";
   case LimitKind::ends: break;
   }
   return "ends";
@@ -88,6 +90,7 @@ StaticMachine::StaticMachine(const LoadedModel& loaded)
   }
   std::fill(at_rest_.rest->state.v.begin(), at_rest_.rest->state.v.end(), 0.0);
   at_rest_.append_equilibrium(values_at_rest(*system_, at_rest_.rest->state));
+  at_rest_.action = action_met_at(*system_, at_rest_.rest->state);
   find_watches();
   at_rest_.left = reserves_of(at_rest_);
 }
@@ -128,6 +131,7 @@ void StaticMachine::find_watches() {
       add(LimitKind::slips, name, usage, -1);
       continue;
     }
+    if (const int strength = channel_index(*system_, name + ".strength_share"); strength >= 0) add(LimitKind::breaks, name, strength, -1);
     const int gap = channel_index(*system_, name + ".gap");
     if (gap < 0 || !(at_rest_.values[static_cast<std::size_t>(gap)] < 0.0)) continue;
     add(LimitKind::lifts, name, gap, -1);
@@ -163,6 +167,7 @@ Probe StaticMachine::probe(const RampedRest& start, const Vec2& before, const Ve
   questions.forces = [this](const RampedRest& rest) { return forces_in(values_at_rest(*system_, rest.state)); };
   questions.on_rest = [&](const RampedRest& rest, double share) {
     probe.append_equilibrium(values_at_rest(*system_, rest.state));
+    if (probe.action.empty()) probe.action = action_met_at(*system_, rest.state);
     probe.rest = rest;
     probe.pull = before + share * (pull - before);
   };

@@ -25,9 +25,10 @@ enum class LimitKind {
   slips,  ///< friction of a joint in the plane is exceeded
   slides, ///< friction along a line or about a pin is exceeded; the body may come to rest elsewhere
   lifts,  ///< a contact that was pressed at rest opens
+  breaks, ///< the force of an element reaches its strength; the proof goes on as if it held
   ends    ///< no equilibrium exists near the previous one
 };
-/// Returns "slips", "slides", "lifts" or "ends".
+/// Returns "slips", "slides", "lifts", "breaks" or "ends".
 [[nodiscard]] const char* name_of(LimitKind kind);
 
 /// A limit that is monitored while the pull grows.
@@ -55,6 +56,7 @@ struct Probe {
   std::vector<double> low, high; ///< extremes of `values` on the path; NaN once a value was NaN
 
   std::optional<Jump> jump; ///< the first one on the path
+  std::string action;       ///< an [[action]] whose condition is met on the path; "" if there is none
   bool is_still = true;     ///< nothing has slid since the equilibrium without pull
   double doubt =
       0.0; ///< largest relative difference of the final forces from those of a path in other increments; infinite if that one comes to no rest

@@ -5,8 +5,11 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/base/stop.h"
 #include "mbd/run/drawing.h"
+#include "mbd/run/edges.h"
+#include "mbd/run/findings.h"
 #include "mbd/run/prominence.h"
 #include "mbd/run/quantity_text.h"
+#include "mbd/system/actions.h"
 #include "mbd/trust/criteria.h"
 #include "mbd/trust/element_judgement.h"
 
@@ -26,9 +29,37 @@ constexpr double k_just_below = 1e-3;  // the path from the opposite pull ends t
 // Returns true for channels that have a meaning at rest: those whose unit contains no rate.
 bool is_of_rest(const std::string& unit) { return unit.find("/s") == std::string::npos; }
 
+// Returns the events of a limit that was reached. The direction in which friction along a line slips is not kept.
+std::vector<EventKind> events_of(LimitKind kind) {
+  switch (kind) {
+  case LimitKind::slips: return {EventKind::slips};
+  case LimitKind::slides: return {EventKind::slips_forward, EventKind::slips_backward};
+  case LimitKind::lifts: return {EventKind::opens};
+  case LimitKind::breaks: return {EventKind::breaks};
+  case LimitKind::ends: break;
+  }
+  return {};
+}
+
+// Returns the kinds of events of a criterion, and those of them that a path of rests shows.
+std::pair<EventKinds, EventKinds> asked_and_seen(const Criterion& criterion) {
+  EventKinds seen;
+  for (const LimitKind kind : {LimitKind::slips, LimitKind::slides, LimitKind::lifts, LimitKind::breaks})
+    for (const EventKind event : events_of(kind)) seen.set(static_cast<std::size_t>(event));
+  seen.set(static_cast<std::size_t>(EventKind::changes_slip_direction)); // it has begun to slip before
+  const EventKinds asked = event_kinds_matching(criterion.event), both = asked & seen;
+  const bool is_one_way =
+      both.test(static_cast<std::size_t>(EventKind::slips_forward)) != both.test(static_cast<std::size_t>(EventKind::slips_backward));
+  return {asked, is_one_way ? EventKinds() : both};
+}
+
 // Returns the results of a path to an equilibrium in the form of a run from the equilibrium without acceleration.
 RunResult as_run(const StaticMachine& machine, const Probe& probe) {
   RunResult result;
+  for (std::size_t w = 0; w < probe.left.size(); ++w)
+    if (!(probe.left[w] > 0.0))
+      for (const EventKind event : events_of(machine.watches()[w].kind))
+        result.events.push_back({0.0, machine.watches()[w].element, event});
   result.trajectory = std::make_unique<Trajectory>(machine.system(), std::vector<std::string>{""});
   const Probe& before = machine.at_rest();
   for (std::size_t i = 0; i < machine.system().channels.size(); ++i) {
@@ -56,9 +87,8 @@ std::vector<CriterionResult> judged(const StaticMachine& machine, const Probe& p
     criteria.insert(criteria.end(), own.criteria.begin(), own.criteria.end());
   }
   for (const Criterion& criterion : model.criteria) {
-    if (criterion.channel.empty()) continue;
     CriterionResult one = judge_criterion(criterion, result);
-    if (is_of_rest(one.unit)) criteria.push_back(std::move(one));
+    if (criterion.channel.empty() ? asked_and_seen(criterion).second.any() : is_of_rest(one.unit)) criteria.push_back(std::move(one));
   }
   return criteria;
 }
@@ -71,13 +101,16 @@ std::string acceleration(double a) { return rounded_text(a, 4) + " m/s²"; }
 
 std::string criterion_text(const CriterionResult& c, const std::string& begin) {
   const std::string what = "'" + (c.channel.empty() ? c.where : c.channel) + "'";
+  if (!c.value && c.channel.empty()) return begin + ": " + c.text + " (" + what + ")"; // an event
   return begin + ": " + c.text + " (" + what + (c.value ? " is " + number(*c.value, c.unit) : " has no value") + ")";
 }
 
 // Proves one load case along several loading paths.
 class CaseProof {
 public:
-  CaseProof(StaticMachine& machine, const LoadedModel& loaded, const StaticLoad& load) : machine_(machine), loaded_(loaded) {
+  /// `monitored`: the model of `machine` with its system.
+  CaseProof(StaticMachine& machine, const LoadedModel& loaded, const LoadedModel& monitored, const StaticLoad& load)
+      : machine_(machine), loaded_(loaded), monitored_(monitored) {
     case_.load = load;
     case_.apparent = machine.gravity() + load.pull;
   }
@@ -166,6 +199,19 @@ private:
     find_tipping();
   }
 
+  // The findings of a run on a single state, and what the proof does not follow.
+  void check_rest(const Probe& way) {
+    for (const Finding& finding : contacts_beyond_edges(monitored_, way.rest->state)) note(Verdict::open, text_with_place(finding));
+    for (const Finding& finding : contacts_too_deep(monitored_, as_run(machine_, way).ranges))
+      note(Verdict::open, text_with_place(finding));
+    if (!way.action.empty())
+      note(Verdict::open,
+           "the condition of action '" + way.action + "' is met on the way to this rest, and a static proof does not follow actions");
+    for (std::size_t w = 0; w < machine_.watches().size(); ++w)
+      if (machine_.watches()[w].kind == LimitKind::breaks && !(way.left[w] > 0.0))
+        note(Verdict::open, "'" + machine_.watches()[w].element + "' breaks, and the rest without it is not computed");
+  }
+
   // A jump ends where the machine's inertia lets it, and forces that depend on the division of the path are not those of the machine.
   void check_path(const Probe& way) {
     const std::string advice = "Let the load grow slowly in a run";
@@ -221,6 +267,7 @@ private:
       if (ways_[w] != &loose_ && !ways_[w]->rest->indifferent.empty())
         note(Verdict::open,
              "nothing holds " + part_text(machine_.system(), ways_[w]->rest->indifferent.front()) + ": it rests wherever it is");
+      check_rest(*ways_[w]);
       for (std::string& remark : remarks_on(machine_.system(), *ways_[w]->rest))
         if (std::find(case_.remarks.begin(), case_.remarks.end(), remark) == case_.remarks.end())
           case_.remarks.push_back(std::move(remark));
@@ -239,7 +286,7 @@ private:
   }
 
   StaticMachine& machine_;
-  const LoadedModel& loaded_;
+  const LoadedModel &loaded_, &monitored_;
   Probe grown_, returned_, loose_;
   std::vector<const Probe*> ways_;
   StaticCase case_;
@@ -273,6 +320,20 @@ std::vector<std::string> assumptions_of(Plane plane) {
           "the bodies of the model are rigid: what bends in them, and the other plane, is not known to it"};
 }
 
+// Returns why no case of this model can be proven: findings that cap the verdict of a run, and actions that a rest does not meet.
+std::vector<std::string> caps_of(const LoadedModel& loaded) {
+  std::vector<std::string> caps;
+  for (const Finding& finding : findings_before(loaded))
+    if (caps_verdict(finding)) caps.push_back(text_with_place(finding));
+  const ActionGroup* const group = action_group(*loaded.system);
+  if (!group) return caps;
+  for (const ActionGroup::ElementData& entry : group->entries)
+    if (entry.is_armed && !entry.trigger.formula)
+      caps.push_back("action '" + entry.name + "' acts " + (entry.trigger.time ? "at a time" : "at an event") +
+                     ", and a static proof does not follow actions: take it out of the model of the proof");
+  return caps;
+}
+
 void conclude(StaticProof& proof, const StaticMachine& machine) {
   proof.verdict = Verdict::hold;
   for (const StaticCase& one : proof.cases) {
@@ -281,6 +342,11 @@ void conclude(StaticProof& proof, const StaticMachine& machine) {
     proof.reason = one.load.name + ": " + one.why;
   }
   if (proof.verdict != Verdict::hold) return;
+  if (!proof.caps.empty()) {
+    proof.verdict = Verdict::open;
+    proof.reason = "at rest under every load, but the proof cannot mean \"hold\": " + proof.caps.front();
+    return;
+  }
   proof.reason = "at rest under every load, with all criteria met that a rest can answer";
   const bool is_asked = !machine.watches().empty() ||
                         std::any_of(proof.cases.begin(), proof.cases.end(), [](const StaticCase& one) { return !one.criteria.empty(); });
@@ -325,17 +391,24 @@ StaticProof prove_statically(const LoadedModel& loaded, const StaticPreset& pres
     if (!options.stop) return;
     if (const std::string why = options.stop(); !why.empty()) throw RunStopped(why);
   };
+  LoadedModel monitored = loaded;
+  monitored.model = machine.model();
+  monitored.system = std::shared_ptr<const System>(std::shared_ptr<void>(), &machine.system()); // owned by `machine`
   for (const StaticLoad& load : loads_for(preset, options.plane)) {
     ask_whether_to_stop();
-    proof.cases.push_back(CaseProof(machine, loaded, load).run());
+    proof.cases.push_back(CaseProof(machine, loaded, monitored, load).run());
   }
   for (int i = 0; i < options.directions; ++i) {
     ask_whether_to_stop();
     proof.polar.push_back(limits_along(machine, 2.0 * std::numbers::pi * i / options.directions, options.largest));
   }
   const RunResult rest = as_run(machine, machine.at_rest());
-  for (const Criterion& criterion : machine.model().criteria)
-    if (criterion.channel.empty() || !is_of_rest(judge_criterion(criterion, rest).unit)) proof.unasked.push_back(criterion.name);
+  for (const Criterion& criterion : machine.model().criteria) {
+    const auto [asked, seen] = asked_and_seen(criterion);
+    if (criterion.channel.empty() ? asked != seen : !is_of_rest(judge_criterion(criterion, rest).unit))
+      proof.unasked.push_back(criterion.name);
+  }
+  proof.caps = caps_of(loaded);
   conclude(proof, machine);
   return proof;
 }

@@ -8,8 +8,9 @@
 //
 //   hold    all paths have an equilibrium, and all criteria that can be evaluated at rest are met
 //   reject  the machine leaves its equilibrium below the load for a known reason, or a criterion is not met
-//   open    otherwise: no equilibrium was found without an explanation, a body is not held by any element, the paths disagree, or
-//           a margin is within rounding of its limit
+//   open    otherwise: no equilibrium was found without an explanation, a body is not held by any element, the paths disagree, a
+//           margin is within rounding of its limit, a run of the model could not mean "hold" either, or the model has an action that
+//           acts later, or at this rest
 #pragma once
 
 #include "mbd/run/tipping.h"
@@ -82,6 +83,7 @@ struct StaticProof {
   double largest = 0.0;             ///< largest pull examined in each direction, m/s²
   Verdict verdict = Verdict::open;  ///< worst of the cases
   std::string reason;               ///< sentence with the reason of the verdict
+  std::vector<std::string> caps;    ///< reasons why the model cannot be proven to hold, as in a run (Judgement::caps), and its actions
   std::vector<std::string> unasked; ///< names of the model's criteria that cannot be evaluated at rest
 };
 

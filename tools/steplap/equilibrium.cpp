@@ -6,6 +6,7 @@
 #include "mbd/run/quantity_text.h"
 #include "mbd/run/rest_values.h"
 #include "mbd/run/run.h"
+#include "mbd/system/actions.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/text_table.h"
 #include "tools/steplap/tipping_text.h"
@@ -46,16 +47,14 @@ void print_poses(std::ostream& out, const System& system, const State& start, co
   out << table;
 }
 
-void print_reactions(std::ostream& out, const Model& model, const Equilibrium& found) {
-  const std::unique_ptr<System> system = compile(model); // a copy, because drives are held fixed in it
-  const std::vector<double> values = values_at_rest(*system, found.state);
+void print_reactions(std::ostream& out, const System& system, const std::vector<double>& values, const Equilibrium& found) {
   std::map<std::string, double> scale; // largest absolute value per unit
   for (std::size_t i = 0; i < values.size(); ++i)
-    scale[system->channels[i].unit] = std::max(scale[system->channels[i].unit], std::abs(values[i]));
+    scale[system.channels[i].unit] = std::max(scale[system.channels[i].unit], std::abs(values[i]));
   TextTable table({Align::left, Align::right});
   table.set_name("reactions");
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const Channel& channel = system->channels[i];
+    const Channel& channel = system.channels[i];
     if (is_reaction(channel)) table.add_row({channel.name, quantity_cell(values[i], channel.unit, scale[channel.unit])});
   }
   if (!table.is_empty()) out << "\nReactions" << (found.depends_on_path ? k_of_one_rest : "") << "\n" << table;
@@ -81,11 +80,21 @@ void print_equilibrium(std::ostream& out, const LoadedModel& loaded, const Equil
       << counted(static_cast<std::size_t>(found.iterations), "iteration", "iterations") << "; acceleration left "
       << small_text(found.residual) << " m/s²; moved at most " << quantity_text(found.moved, "m", k_unit) << "\n\n";
   print_poses(out, *loaded.system, loaded.system->initial_state(), found.state);
-  print_reactions(out, loaded.model, found);
+  const std::unique_ptr<System> system = compile(loaded.model); // a copy, because drives are held fixed in it
+  const std::vector<double> values = values_at_rest(*system, found.state);
+  print_reactions(out, *system, values, found);
   print_margins(out, *loaded.system, found.margins, found.depends_on_path);
   print_tipping(out, loaded, found.state);
   std::vector<std::string> remarks = remarks_on(*loaded.system, found);
   for (std::string& text : tipping_over(loaded, loaded.assembled)) remarks.push_back(std::move(text));
+  if (const std::string action = action_met_at(*loaded.system, found.state); !action.empty())
+    remarks.push_back("the condition of action '" + action + "' is met here: this is the rest before it");
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Channel& channel = system->channels[i];
+    if (channel.role == ChannelRole::strength_use && values[i] >= 1.0)
+      remarks.push_back("'" + channel.name.substr(0, channel.name.rfind('.')) + "' breaks: it would have to carry " +
+                        quantity_text(100.0 * values[i], "%", 1.0) + " of its strength");
+  }
   if (!remarks.empty()) out << "\n";
   for (const std::string& remark : remarks) out << "Note: " << remark << "\n";
 }

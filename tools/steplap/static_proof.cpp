@@ -96,6 +96,9 @@ void print_cases(std::ostream& out, const StaticProof& proof) {
   out << table;
   for (const StaticCase& one : proof.cases)
     if (one.verdict != Verdict::hold) out << "  " << steplap::name_of(one.verdict) << ", " << one.load.name << ": " << one.why << "\n";
+    else if (!one.slid.empty())
+      out << "  " << one.load.name << ": '" << one.slid.front() << "' slides, and the machine comes to rest "
+          << quantity_text(one.moved, "m") << " away\n";
 }
 
 // Prints, for each kind of limit, the direction of the acceleration that reaches it first.
@@ -103,7 +106,7 @@ void print_weakest(std::ostream& out, const StaticProof& proof) {
   if (proof.polar.empty()) return;
   TextTable table({Align::left, Align::right, Align::right, Align::right});
   bool is_any = false;
-  for (const LimitKind kind : {LimitKind::slips, LimitKind::slides, LimitKind::lifts, LimitKind::ends}) {
+  for (const LimitKind kind : {LimitKind::slips, LimitKind::slides, LimitKind::lifts, LimitKind::breaks, LimitKind::ends}) {
     const StaticDirection* weakest = nullptr;
     std::size_t which = 0;
     for (const StaticDirection& direction : proof.polar)

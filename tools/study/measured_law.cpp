@@ -7,12 +7,12 @@
 #include <openturns/ExponentialFactory.hxx>
 #include <openturns/FittingTest.hxx>
 #include <openturns/GumbelFactory.hxx>
-#include <openturns/LogNormalFactory.hxx>
+#include <openturns/LogNormal.hxx>
 #include <openturns/NormalFactory.hxx>
 #include <openturns/TriangularFactory.hxx>
 #include <openturns/TruncatedDistribution.hxx>
 #include <openturns/UniformFactory.hxx>
-#include <openturns/WeibullMinFactory.hxx>
+#include <openturns/WeibullMin.hxx>
 
 #include <algorithm>
 #include <array>
@@ -37,12 +37,29 @@ std::vector<double> values_of(const Variable& v) {
   return values;
 }
 
+OT::Sample logarithms(OT::Sample sample, double factor) {
+  for (OT::UnsignedInteger i = 0; i < sample.getSize(); ++i) sample(i, 0) = factor * std::log(sample(i, 0));
+  return sample;
+}
+
+// Lognormal and Weibull laws that begin at 0. With a location fitted as well, few values give a law that begins at the smallest of them: the
+// likelihood has no maximum there.
+OT::Distribution fitted_lognormal(const OT::Sample& sample) {
+  const OT::Distribution of_logarithms = OT::NormalFactory().build(logarithms(sample, 1.0));
+  return OT::LogNormal(of_logarithms.getParameter()[0], of_logarithms.getParameter()[1], 0.0);
+}
+// −ln x of a Weibull variable x has a Gumbel law.
+OT::Distribution fitted_weibull(const OT::Sample& sample) {
+  const OT::Distribution of_logarithms = OT::GumbelFactory().build(logarithms(sample, -1.0));
+  return OT::WeibullMin(std::exp(-of_logarithms.getParameter()[1]), 1.0 / of_logarithms.getParameter()[0], 0.0);
+}
+
 OT::Distribution fitted(const std::string& kind, const OT::Sample& sample) {
   if (kind == "normal") return OT::NormalFactory().build(sample);
-  if (kind == "lognormal") return OT::LogNormalFactory().build(sample);
+  if (kind == "lognormal") return fitted_lognormal(sample);
   if (kind == "uniform") return OT::UniformFactory().build(sample);
   if (kind == "triangular") return OT::TriangularFactory().build(sample);
-  if (kind == "weibull") return OT::WeibullMinFactory().build(sample);
+  if (kind == "weibull") return fitted_weibull(sample);
   if (kind == "gumbel") return OT::GumbelFactory().build(sample);
   if (kind == "beta") return OT::BetaFactory().build(sample);
   return OT::ExponentialFactory().build(sample);
@@ -169,6 +186,11 @@ MeasuredLaw measured_law(const Variable& v) {
   const auto outside = std::count_if(values.begin(), values.end(), [&](double x) {
     return x < v.lower.value_or(-std::numeric_limits<double>::infinity()) || x > v.upper.value_or(std::numeric_limits<double>::infinity());
   });
+  const bool is_of_logarithms = v.distribution == "lognormal" || v.distribution == "weibull";
+  if (is_of_logarithms && *std::min_element(values.begin(), values.end()) <= 0.0)
+    complain(v, "a " + v.distribution + " distribution is fitted to values above zero only, and '" + v.measured + "' has others");
+  if (is_of_logarithms && std::all_of(values.begin(), values.end(), [&](double x) { return x == values.front(); }))
+    complain(v, "all values of '" + v.measured + "' are the same: they have no distribution");
   const bool is_within = (v.lower || v.upper) && outside == 0;
   const OT::Distribution whole = is_within ? fitted_within(v, values, sample) : fitted(v.distribution, sample);
   MeasuredLaw law;

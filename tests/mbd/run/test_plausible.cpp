@@ -266,3 +266,33 @@ TEST_CASE("a tolerance so small that no finer run could tell its error is raised
   }
   CHECK_FALSE(found(run("1e-14", "rk4").findings, "tolerance_below_rounding")); // it has no use for a tolerance
 }
+
+// ω at the centre of gravity of an arm about a pin without the velocity ω r: assembly keeps the angular momentum about the pin.
+TEST_CASE("a velocity that the joints do not permit caps the verdict, one that they permit does not") {
+  const std::string arm = "simulation.end = 0.1\n[[body]]\nname = \"arm\"\nmass = 2.0\ninertia = 0.5\nposition = [1.0, 0.0]\n",
+                    pin = "[[element]]\nkind = \"revolute\"\nname = \"pin\"\na = { body = \"arm\", at = [0.0, 0.0] }\n"
+                          "[[acceptance]]\nname = \"swing\"\nchannel = \"arm.omega\"\nwithin = \"10 rad/s\"\n";
+  const Report changed = run_of(arm + "angular_velocity = 2.0\n" + pin);
+  REQUIRE(found(changed.findings, "velocity_changed"));
+  CHECK(found(changed.findings, "velocity_changed")->text.find("2 rad/s") != std::string::npos);
+  CHECK(changed.judgement.verdict == Verdict::open);
+  CHECK_FALSE(found(run_of(arm + "angular_velocity = 2.0\nvelocity = [0.0, 2.0]\n" + pin).findings, "velocity_changed"));
+  CHECK_FALSE(found(run_of("simulation.velocity = [2.0, 0.0]\n" + arm + pin).findings, "velocity_changed")); // common to all bodies
+}
+
+TEST_CASE("a rest that is found by overturning a body caps the verdict") {
+  const auto box = [](double pull) {
+    std::string text = "gravity = [" + number(pull) +
+                       ", -9.81]\nsimulation = { end = 0.1, initial = \"equilibrium\" }\n"
+                       "[[body]]\nname = \"box\"\nmass = 1000.0\ninertia = 500.0\nposition = [0.0, 1.0]\n";
+    for (const std::string x : {"-0.4", "0.4"})
+      text += "[[element]]\nkind = \"unilateral_contact\"\nname = \"foot " + x + "\"\na = { body = \"box\", at = [" + x +
+              ", 0.0] }\nstiffness = 1e7\ndamping = 1e5\n";
+    return text + "[[element]]\nkind = \"coulomb_stick\"\nname = \"floor\"\ncontacts = [\"foot -0.4\", \"foot 0.4\"]\n"
+                  "static_friction = 0.8\n[[acceptance]]\nname = \"stays\"\nchannel = \"box.x\"\nwithin = \"5 m\"\n";
+  };
+  const Report overturned = run_of(box(6.0));
+  CHECK(found(overturned.findings, "start_overturned"));
+  CHECK(overturned.judgement.verdict == Verdict::open);
+  CHECK_FALSE(found(run_of(box(2.0)).findings, "start_overturned"));
+}

@@ -243,3 +243,78 @@ TEST_CASE("the road asks for 0.6 g to both sides of a load that may tip") {
   }
   CHECK(prove_statically(*machine(block_on_deck(0.62, 1.0, 0.8)), static_preset("road"), transverse).verdict == Verdict::hold);
 }
+
+namespace {
+
+// A block of 1 t on a rail with friction of 300 N.
+std::string block_on_rail(const std::string& more) {
+  return "[[body]]\nname = 'block'\nmass = 1000\ninertia = 100\nposition = [0, 0.5]\n"
+         "[[element]]\nkind = 'prismatic'\nname = 'rail'\na = 'block'\nb = { body = 'ground', at = [0, 0.5] }\n" +
+         more;
+}
+std::string brake(double holds) {
+  return "[[element]]\nkind = 'joint_friction'\nname = 'brake'\na = 'block'\nb = { body = 'ground', at = [0, 0.5] }\ncoordinate = 'x'\n"
+         "holds = " +
+         std::to_string(holds) + "\n";
+}
+std::string tie(double strength, const std::string& more = "") {
+  return "[[element]]\nkind = 'tie'\nname = 'bolt'\na = 'block'\nb = { body = 'ground', at = [-1, 0.5] }\nacts = 'both'\n"
+         "stiffness = 1e7\nstrength = " +
+         std::to_string(strength) + "\n" + more;
+}
+
+} // namespace
+
+TEST_CASE("a tie gives way at its strength") {
+  const StaticProof held = proof_of(block_on_rail(tie(1000.0)), {0.99, 0.0}, 4), broken = proof_of(block_on_rail(tie(1000.0)), {1.01, 0.0});
+  CHECK(held.verdict == Verdict::hold);
+  const StaticLimit* const limit = first_of(held.polar[0].ray, LimitKind::breaks);
+  REQUIRE(limit);
+  CHECK(limit->acceleration == doctest::Approx(1.0).epsilon(1e-5));
+  CHECK(broken.verdict == Verdict::reject);
+  CHECK(broken.reason.find("does not break") != std::string::npos);
+  // Without a criterion of its own the rest is that of a machine which does not exist.
+  CHECK(proof_of(block_on_rail(tie(1000.0, "consequence = 'none'\n")), {1.01, 0.0}).verdict == Verdict::open);
+}
+
+TEST_CASE("actions: a proof does not follow them, and says so where one would act") {
+  const auto action = [](const std::string& when) {
+    return block_on_rail(brake(300.0)) + "[[action]]\nname = 'worn'\nwhen = \"" + when + "\"\ndo = ['release brake']\n";
+  };
+  CHECK(proof_of(action("block.x > '1 m'"), {0.2, 0.0}).verdict == Verdict::hold); // the condition is met nowhere
+  for (const char* when : {"0 s", "5 s", "t >= '0 s'", "block.x < '1 m'", "brake slips forward"}) {
+    CAPTURE(when);
+    const StaticProof proof = proof_of(action(when), {0.2, 0.0});
+    CHECK(proof.verdict == Verdict::open);
+    CHECK(proof.reason.find("action 'worn'") != std::string::npos);
+  }
+}
+
+TEST_CASE("criteria that forbid slip or lifting are judged, and findings of a run cap a proof") {
+  const std::string deck = block_on_deck(0.5, 1.0, 0.3), chain = "[[element]]\nkind = 'spring_damper'\nname = 'chain'\na = 'block'\n"
+                                                                 "b = { body = 'ground', at = [-1, 1] }\nstiffness = 1e7\n";
+  const std::string never = "[[acceptance]]\nname = 'no slip'\nelement = 'deck'\nevent = 'slips*'\nconsequence = 'reject'\n";
+  CHECK(proof_of(deck + chain, {0.5 * k_g, 0.0}).verdict == Verdict::hold);
+  const StaticProof slid = proof_of(deck + chain + never, {6.0 * k_g, 0.0});
+  CHECK(slid.verdict == Verdict::reject);
+  CHECK(slid.reason.find("no 'slips*' of 'deck'") != std::string::npos);
+  CHECK(slid.unasked.empty());
+  const StaticProof still = proof_of(deck + never, {0.2 * k_g, 0.0});
+  CHECK(still.verdict == Verdict::hold);
+  CHECK(still.cases[0].criteria.size() == 1);
+  const StaticProof rubber = proof_of(block_on_deck(0.5, 0.2, 3.0));
+  CHECK(rubber.verdict == Verdict::open);
+  REQUIRE_FALSE(rubber.caps.empty());
+  CHECK(rubber.reason.find("unlike any dry contact") != std::string::npos);
+}
+
+TEST_CASE("a foot beyond the edge of what carries it proves nothing") {
+  const std::string pallet = "[[body]]\nname = 'pallet'\nmass = 100\ninertia = 10\nposition = [0, -0.1]\n"
+                             "outline = [[-0.4, -0.1], [0.4, -0.1], [0.4, 0.1], [-0.4, 0.1]]\n"
+                             "[[element]]\nkind = 'weld'\nname = 'fixed'\na = 'pallet'\n";
+  std::string deck = block_on_deck(0.5, 1.0, 0.3);
+  for (std::size_t at = 0; (at = deck.find("body = 'ground'", at)) != std::string::npos;) deck.replace(at, 15, "body = 'pallet'");
+  const StaticProof proof = proof_of(pallet + deck);
+  CHECK(proof.verdict == Verdict::open);
+  CHECK(proof.reason.find("beyond the edge of 'pallet'") != std::string::npos);
+}

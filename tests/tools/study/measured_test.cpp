@@ -148,3 +148,22 @@ TEST_CASE("what cannot be fitted between bounds is refused") {
   CHECK(same.code == 3);
   CHECK(has(same.err, "are the same"));
 }
+
+// Of ten values a law with a location of its own would begin at the smallest: nothing below it, and a tail without end above.
+TEST_CASE("few values are fitted by a law that begins at zero") {
+  StudyBench bench;
+  std::vector<double> values;
+  for (int i = 0; i < 10; ++i) values.push_back(0.24 + 0.12 * i / 9.0);
+  double mean = 0.0, squares = 0.0;
+  for (const double x : values) mean += std::log(x) / 10.0;
+  for (const double x : values) squares += std::pow(std::log(x) - mean, 2) / 9.0;
+  const study::JointLaw lognormal = law_of(variable(bench, "lognormal", values));
+  for (const double z : {-2.326348, 0.0, 2.326348}) // of 1 %, 50 % and 99 %
+    CHECK(lognormal.quantile(0, z < 0.0   ? 0.01
+                                : z > 0.0 ? 0.99
+                                          : 0.5) == doctest::Approx(std::exp(mean + z * std::sqrt(squares))).epsilon(1e-6));
+  const study::JointLaw weibull = law_of(variable(bench, "weibull", values));
+  CHECK(weibull.quantile(0, 0.01) < 0.24); // 1 % lies below the smallest of ten, which is no end
+  CHECK(weibull.quantile(0, 0.01) > 0.12);
+  CHECK(weibull.quantile(0, 0.999) < 0.45);
+}
