@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <exception>
 #include <thread>
 #include <tuple>
@@ -101,6 +102,13 @@ bool is_less_severe(const CaseLimit& a, const CaseLimit& b) {
   return std::tuple(a.result.outcome, a.share.value_or(0.0)) < std::tuple(b.result.outcome, b.share.value_or(0.0));
 }
 
+// Returns true if `b` is more severe beyond both errors: of mirrored cases the first governs, whatever the rounding.
+bool is_surely_less_severe(const CaseLimit& a, const CaseLimit& b) {
+  const double errors = a.share_error.value_or(0.0) + b.share_error.value_or(0.0);
+  const bool is_tie = a.result.outcome == b.result.outcome && std::abs(b.share.value_or(0.0) - a.share.value_or(0.0)) <= errors;
+  return !is_tie && is_less_severe(a, b);
+}
+
 } // namespace
 
 void add_case_problems(const LoadCase& one, const ModelError& error, std::vector<Diagnostic>& problems) {
@@ -190,7 +198,7 @@ std::vector<LimitRow> limit_rows(const LoadCaseResults& results) {
       auto row = std::find_if(rows.begin(), rows.end(), [&](const LimitRow& r) { return r.name == limit.name; });
       if (row == rows.end()) row = rows.insert(rows.end(), {limit.name, std::vector<const CaseLimit*>(results.cases.size()), k});
       row->in_case[k] = &limit;
-      if (is_less_severe(*row->in_case[row->governing], limit)) row->governing = k;
+      if (is_surely_less_severe(*row->in_case[row->governing], limit)) row->governing = k;
     }
   return rows;
 }

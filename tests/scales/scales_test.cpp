@@ -54,7 +54,6 @@ const std::map<std::string, std::string> k_not_yet_by_length = {
     {"layouts/three_limb_stepped.toml", k_rest},
     {"loads/wagon_vibration.toml", k_rest},
     {"machines/brick_wall.toml", k_rest},
-    {"machines/stacked_blocks.toml", k_rest},
 };
 
 // Formulas of forces and states, and of fields by parameters, hold numbers with units of their own, which are no fields: scaling does

@@ -57,7 +57,7 @@ std::pair<EventKinds, EventKinds> asked_and_seen(const Criterion& criterion) {
 RunResult as_run(const StaticMachine& machine, const Probe& probe) {
   RunResult result;
   for (std::size_t w = 0; w < probe.left.size(); ++w)
-    if (!(probe.left[w] > 0.0))
+    if (!(probe.left[w] >= -k_close)) // at the limit within rounding nothing has happened, which the reserve itself tells
       for (const EventKind event : events_of(machine.watches()[w].kind))
         result.events.push_back({0.0, machine.watches()[w].element, event});
   result.trajectory = std::make_unique<Trajectory>(machine.system(), std::vector<std::string>{""});
@@ -208,7 +208,7 @@ private:
       note(Verdict::open,
            "the condition of action '" + way.action + "' is met on the way to this rest, and a static proof does not follow actions");
     for (std::size_t w = 0; w < machine_.watches().size(); ++w)
-      if (machine_.watches()[w].kind == LimitKind::breaks && !(way.left[w] > 0.0))
+      if (machine_.watches()[w].kind == LimitKind::breaks && !(way.left[w] > k_close))
         note(Verdict::open, "'" + machine_.watches()[w].element + "' breaks, and the rest without it is not computed");
   }
 

@@ -23,8 +23,8 @@ struct PyMode {
 std::vector<PyMode> modes(const PyModel& model, int count, std::optional<double> near) {
   if (count < 0) throw py::value_error("count: 0 for all, or how many");
   if (near && !(*near > 0.0)) throw py::value_error("near: a frequency above zero, Hz");
+  State state = rest_of(model).state;
   return computed([&](const StopQuestion&) {
-    State state = equilibrium_of(*model.loaded).state;
     std::fill(state.v.begin(), state.v.end(), 0.0);
     std::vector<PyMode> all;
     for (VibrationMode& mode : vibration_modes(*model.loaded->system, state, {count, near}).modes)
@@ -97,7 +97,7 @@ void add_analysis(py::module_& module) {
   module.attr("Model").attr("modes") =
       py::cpp_function(modes, py::name("modes"), py::is_method(module.attr("Model")), py::arg("count") = 0, py::arg("near") = py::none(),
                        "Modes of small vibrations about equilibrium, the slowest first. `count`: so many, 0 all (of large models 20); "
-                       "`near`: those nearest to this frequency, Hz. Raises "
+                       "`near`: those nearest to this frequency, Hz. Warns as equilibrium(). Raises "
                        "NumericalFailure where it does not rest.");
   native_class<PyJoint>(
       module, "Joint",

@@ -30,6 +30,8 @@ struct PyModel {
 
 /// Returns the model before completion, so that values can be set in it.
 [[nodiscard]] Model given_model(const PyModel& model);
+/// Returns the equilibrium of a model. Remarks on it (remarks_on()) become warnings of Python. Throws as equilibrium_of() does.
+[[nodiscard]] Equilibrium rest_of(const PyModel& model);
 
 /// An event as a Python object.
 struct PyEvent {

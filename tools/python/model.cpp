@@ -32,7 +32,7 @@ PyModel from_text(const std::string& text, const std::string& path, const std::v
 }
 
 py::dict equilibrium(const PyModel& model) {
-  const Equilibrium found = computed([&](const StopQuestion&) { return equilibrium_of(*model.loaded); });
+  const Equilibrium found = rest_of(model);
   py::dict poses;
   const System& system = *model.loaded->system;
   for (std::size_t i = 1; i < system.bodies.size(); ++i)
@@ -41,6 +41,13 @@ py::dict equilibrium(const PyModel& model) {
 }
 
 } // namespace
+
+Equilibrium rest_of(const PyModel& model) {
+  Equilibrium found = computed([&](const StopQuestion&) { return equilibrium_of(*model.loaded); });
+  for (const std::string& remark : remarks_on(*model.loaded->system, found))
+    if (PyErr_WarnEx(PyExc_UserWarning, remark.c_str(), 1) != 0) throw py::error_already_set(); // warnings count as errors
+  return found;
+}
 
 Model given_model(const PyModel& model) {
   const LoadedModel& loaded = *model.loaded;
@@ -83,7 +90,8 @@ void add_model(py::module_& module) {
       .def("with_values", with_overrides, py::arg("values"),
            "The same model with other values: {'element.rope.stiffness': '2 MN/m', 'simulation.end': 0.5}. Raises ModelError.")
       .def("equilibrium", equilibrium,
-           "Where it rests: body -> (x, y, theta) of the centre of gravity, m and rad. Raises NumericalFailure if it does not.")
+           "Where it rests: body -> (x, y, theta) of the centre of gravity, m and rad. Warns if it overturned, slid or may rest elsewhere. "
+           "Raises NumericalFailure if it does not.")
       // A model is pickled as its text and overrides. Applying the overrides again to this text changes nothing.
       .def(py::pickle(
           [](const PyModel& m) { return py::make_tuple(m.source ? *m.source : m.loaded->text, m.loaded->path, m.loaded->overrides); },

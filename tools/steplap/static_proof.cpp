@@ -98,7 +98,7 @@ void print_cases(std::ostream& out, const StaticProof& proof) {
     if (one.verdict != Verdict::hold) out << "  " << steplap::name_of(one.verdict) << ", " << one.load.name << ": " << one.why << "\n";
     else if (!one.slid.empty())
       out << "  " << one.load.name << ": '" << one.slid.front() << "' slides, and the machine comes to rest "
-          << quantity_text(one.moved, "m") << " away\n";
+          << rounded_text(1e3 * one.moved, 3) << " mm away\n";
 }
 
 // Prints, for each kind of limit, the direction of the acceleration that reaches it first.

@@ -148,6 +148,17 @@ def test_page_summary_and_equilibrium():
     assert all(len(pose) == 3 for pose in poses.values())
 
 
+def test_a_rest_that_is_found_by_overturning_is_a_warning():
+    foot = {"kind": "unilateral_contact", "stiffness": 1e7, "damping": 1e5}
+    box = {"gravity": [6.0, -9.81], "body": [{"name": "box", "mass": 1000.0, "inertia": 500.0, "position": [0.0, 1.0]}],
+           "element": [{"name": "front", "a": {"body": "box", "at": [0.4, 0.0]}, **foot}, {"name": "rear", "a": {"body": "box", "at": [-0.4, 0.0]}, **foot},
+                       {"name": "floor", "kind": "coulomb_stick", "contacts": ["front", "rear"], "static_friction": 0.8}]}
+    model = steplap.build(box)
+    for ask in (model.equilibrium, model.modes):
+        with pytest.warns(UserWarning, match="does not stand as given"):
+            ask()
+
+
 def test_a_model_from_a_text_is_that_of_its_file(tmp_path):
     path = MODELS / "machines/ladder.toml"
     by_file, by_text = steplap.load(str(path)), steplap.loads(path.read_text(), path=str(path))

@@ -70,11 +70,11 @@ steplap.overview = (() => {
     const force = run.summary.extremes[`${entry.who[0]}.force`];
     return isAbout(entry, 'closes') && force ? force.t_max : entry.from;
   }
-  // Returns the time at which a slide is largest or has ended.
+  // Returns the time at which a slide is largest or has ended. Afterwards rounding decides where it is largest.
   function endOf(run, entry) {
-    const slide = run.summary.extremes[`${entry.who[0]}.slide`];
-    if (slide && slide.max > slide.min) return slide.max > -slide.min ? slide.t_max : slide.t_min;
-    return entry.to ?? run.end;
+    const slide = run.summary.extremes[`${entry.who[0]}.slide`], end = entry.to ?? run.end;
+    if (slide && slide.max > slide.min) return Math.min(end, slide.max > -slide.min ? slide.t_max : slide.t_min);
+    return end;
   }
   // Returns the largest rotation of these bodies up to `until`, rad, and its time.
   function furthestTurn(run, names, until) {
