@@ -36,7 +36,7 @@ public:
     const Judgement& j = report_.judgement;
     if (report_.run.failure) {
       std::string text = "The run stopped at " + time(report_.run.result.final_state.t) +
-                         " before its end: " + first_sentence(report_.run.failure->text) + ".";
+                         ", before its end: " + first_sentence(report_.run.failure->text) + ".";
       if (j.so_far == Verdict::inspect || j.so_far == Verdict::reject) text += " Until then: " + unmet(j.so_far);
       return text;
     }

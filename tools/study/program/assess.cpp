@@ -168,13 +168,14 @@ void print_event(TextTable& table, const Assessment& a, std::size_t number) {
     double slid = 0.0;
     for (const JointPassage& joint : p.joints) slid = std::max(slid, joint.slid_total);
     const char* const event = words_of(EventKind::slips);
-    const char* const outcome = p.is_made ? "holds" : "not run";
+    const bool has_joints = !p.joints.empty();
+    const char* const outcome = !p.is_made ? "not run" : has_joints ? "holds" : "-";
     const bool is_first = m == 0;
     table.add_row({is_first ? std::to_string(number + 1) : "", is_first ? rounded_text(axis.peak_time, 7) : "",
                    is_first ? std::string(1, record.axes()[shock.worst]) + " " + rounded_text(axis.peak / k_gravity, 3) : "",
                    a.models[m].recorder.plane, name_of(p.verdict), slips ? event : outcome,
-                   weakest == p.joints.end() ? "-" : rounded_text(weakest->margin, 3), quantity_text(slid, "m"),
-                   m < e.slip.size() && e.slip[m].runs > 0 ? percent(e.slip[m].value) : "-"});
+                   weakest == p.joints.end() ? "-" : rounded_text(weakest->margin, 3), has_joints ? quantity_text(slid, "m") : "-",
+                   has_joints && m < e.slip.size() && e.slip[m].runs > 0 ? percent(e.slip[m].value) : "-"});
   }
 }
 
