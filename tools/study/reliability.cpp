@@ -196,6 +196,7 @@ private:
     std::string status = doubt(first);
     if (status.empty()) status = sampling_doubt(probability, "first order");
     if (!status.empty() && !has_trusted_estimate()) answer_.degrade(Standing::not_trusted);
+    check_surrogate(first, probability);
     add("form", "beta", first.beta, status);
     add("form", "probability", probability, status);
     report_factors("form", "factor", probability);
@@ -207,6 +208,23 @@ private:
     if (points_.left_starts > 0)
       answer_.notes.push_back("The samples for searches were used up before " + std::to_string(points_.left_starts) +
                               " more were begun: 'search_samples' gives more");
+  }
+
+  // A surrogate that gives a tenth of first order or less may not have learned the region about the design point: without samples of the
+  // limit state itself it is no witness against a point that was found.
+  void check_surrogate(const DesignPoint& first, double probability) {
+    constexpr double k_far = 10.0;
+    const auto is_surrogate = [](const Estimate& e) { return e.method == "kriging"; };
+    const auto is_trusted_sampling = [&](const Estimate& e) { return e.is_trusted && !is_surrogate(e); };
+    if (!first.is_found || std::any_of(estimates_.begin(), estimates_.end(), is_trusted_sampling)) return;
+    for (const Estimate& e : estimates_) {
+      if (!is_surrogate(e) || !(probability > k_far * e.test(run_.study().failed).high)) continue;
+      answer_.notes.push_back(
+          text_of("kriging gives at most %.3g, first order at the design point %.3g: kriging may have missed the failures "
+                  "there. Add \"importance_sampling\" to the methods",
+                  e.test(run_.study().failed).high, probability));
+      answer_.degrade(Standing::not_trusted);
+    }
   }
 
   void report_sorm(const DesignPoint& first) {

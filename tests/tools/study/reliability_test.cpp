@@ -599,6 +599,23 @@ TEST_CASE("methods that contradict each other: none of them is believed") {
   CHECK(agreed.code != 4);
 }
 
+// A band of width 0.1 about x2 = -1, 0.0242, beside a plane at a distance of three: a surrogate of 37 samples may have learned the plane alone.
+// First order finds the band's nearest point, at 0.95, and gives 0.171.
+TEST_CASE("a surrogate that has missed the failures about a design point is not believed") {
+  const double truth = 0.0242 + 0.00135;
+  for (const int seed : {1, 2, 3}) {
+    CAPTURE(seed);
+    StudyBench bench;
+    const Outcome outcome = bench.run("seed = " + std::to_string(seed) + "\n" +
+                                      standard_study(2, "min(3 - x1, 10*(abs(x2 + 1) - 0.05))", "methods = [\"form\", \"kriging\"]\n"));
+    const double p = bench.find("kriging", "probability").value;
+    CAPTURE(p);
+    if (p < 0.2 * truth) CHECK(has(outcome.out, "kriging may have missed the failures"));
+    CHECK((p > 0.8 * truth || outcome.code == 4));
+    if (p > 0.8 * truth) CHECK(!has(outcome.out, "may have missed"));
+  }
+}
+
 TEST_CASE("searches for design points take fewer samples than sampling does, and no more than they are given") {
   for (const KnownCase& c : known_cases()) {
     if (c.form_beta == 0.0) continue;
