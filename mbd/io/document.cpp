@@ -156,7 +156,7 @@ private:
         else removed.insert(name);
       } else if (is_new) {
         if (take_flag(entry, "replace")) report_missing(entry, over.key, "replaced", inherited);
-        if (!entry.find("unset")) { // nothing is inherited, and nothing reported: moved as it is
+        if (!entry.find("unset")) { // a new entry inherits nothing and reports nothing, so it is moved
           base.children.push_back(std::move(entry));
           continue;
         }

@@ -330,6 +330,7 @@ bool Descent::advance(VecX step) {
 }
 
 // Returns true if the bodies of a friction element are so near their first touch that rocking from corner to corner explains the way.
+// Precondition: at_touch_ holds the poses of the first touch.
 bool Descent::is_near_touch(int f) const {
   const Touch& touch = touch_[static_cast<std::size_t>(f)];
   const RowSpec& row = *system_.frictions[f].friction->rows(state_.friction[f]);

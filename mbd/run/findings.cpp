@@ -356,9 +356,12 @@ std::optional<Finding> changed_velocity(const LoadedModel& loaded) {
   const std::vector<double>&given = system.initial_state().v, &now = loaded.assembled.v;
   std::optional<Finding> found;
   double most = k_changed;
-  for (int i = 1; i < system.body_count(); ++i) {
+  const std::vector<Body>& bodies = loaded.model.bodies;
+  auto body = bodies.begin();
+  for (int i = 1; i < system.body_count(); ++i) { // the system has the movable bodies in the order of the model
     const std::size_t k = 3 * static_cast<std::size_t>(i);
-    const Body* const body = loaded.model.find_body(system.bodies[i].name);
+    body = std::find_if(body, bodies.end(), [&](const Body& b) { return b.name == system.bodies[i].name; });
+    if (body == bodies.end()) break;
     const auto look = [&](double size, double change, const char* what, double size_now, const char* unit) {
       if (!(change > most * size)) return;
       most = change / size;
@@ -368,10 +371,10 @@ std::optional<Finding> changed_velocity(const LoadedModel& loaded) {
                           ": give all bodies of a mechanism velocities that fit its joints",
                       body->where};
     };
-    if (body && body->velocity != Vec2::Zero())
+    if (body->velocity != Vec2::Zero())
       look(portable::hypot(given[k], given[k + 1]), portable::hypot(now[k] - given[k], now[k + 1] - given[k + 1]), "velocity",
            portable::hypot(now[k], now[k + 1]), "m/s");
-    if (body && body->angular_velocity != 0.0)
+    if (body->angular_velocity != 0.0)
       look(std::abs(given[k + 2]), std::abs(now[k + 2] - given[k + 2]), "angular velocity", std::abs(now[k + 2]), "rad/s");
   }
   return found;

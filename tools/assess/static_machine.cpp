@@ -264,6 +264,8 @@ Probe StaticMachine::loaded_again(const Probe& before, const Vec2& pull) {
     if (!unloaded.rest) return unloaded;
     Probe loaded = probe(*unloaded.rest, Vec2::Zero(), pull, first);
     if (unloaded.jump) loaded.jump = unloaded.jump;
+    for (const Probe* const earlier : {&unloaded, &before})
+      if (!earlier->action.empty()) loaded.action = earlier->action;
     return loaded;
   });
   again.doubt = std::max(again.doubt, before.doubt);

@@ -53,11 +53,19 @@ std::pair<EventKinds, EventKinds> asked_and_seen(const Criterion& criterion) {
   return {asked, is_one_way ? EventKinds() : both};
 }
 
+// Returns true if the criterion forbids what happens where this limit is reached.
+bool forbids(const Criterion& criterion, const Watch& watch) {
+  const std::vector<EventKind> events = events_of(watch.kind);
+  const EventKinds asked = event_kinds_matching(criterion.event);
+  return criterion.channel.empty() && matches_pattern(watch.element, criterion.element.empty() ? "*" : criterion.element) &&
+         std::any_of(events.begin(), events.end(), [&](EventKind event) { return asked.test(static_cast<std::size_t>(event)); });
+}
+
 // Returns the results of a path to an equilibrium in the form of a run from the equilibrium without acceleration.
 RunResult as_run(const StaticMachine& machine, const Probe& probe) {
   RunResult result;
   for (std::size_t w = 0; w < probe.left.size(); ++w)
-    if (!(probe.left[w] >= -k_close)) // at the limit within rounding nothing has happened, which the reserve itself tells
+    if (!(probe.left[w] >= -k_close)) // within rounding of a limit it is not known: CaseProof::check_rest()
       for (const EventKind event : events_of(machine.watches()[w].kind))
         result.events.push_back({0.0, machine.watches()[w].element, event});
   result.trajectory = std::make_unique<Trajectory>(machine.system(), std::vector<std::string>{""});
@@ -210,6 +218,10 @@ private:
     for (std::size_t w = 0; w < machine_.watches().size(); ++w)
       if (machine_.watches()[w].kind == LimitKind::breaks && !(way.left[w] > k_close))
         note(Verdict::open, "'" + machine_.watches()[w].element + "' breaks, and the rest without it is not computed");
+    for (const Criterion& criterion : machine_.model().criteria)
+      for (std::size_t w = 0; w < machine_.watches().size(); ++w)
+        if (const Watch& watch = machine_.watches()[w]; std::abs(way.left[w]) <= k_close && forbids(criterion, watch))
+          note(Verdict::open, "whether '" + watch.element + "' " + name_of(watch.kind) + " is within rounding of its limit");
   }
 
   // A jump ends where the machine's inertia lets it, and forces that depend on the division of the path are not those of the machine.
@@ -314,7 +326,8 @@ StaticDirection limits_along(StaticMachine& machine, double angle, double larges
 
 std::vector<std::string> assumptions_of(Plane plane) {
   return {std::string("x of the model points ") + (plane == Plane::lengthwise ? "forward" : "to one side of the vehicle") + ", y up",
-          "the vehicle is held by the drives of the model, and its acceleration is constant; the swing with which a sudden one begins is "
+          "the vehicle is held by the drives of the model, signals have their values at t = 0, and its acceleration is constant; the swing "
+          "with which a sudden one begins is "
           "not part of it",
           "friction, pressures and stiffnesses are those of the model: their scatter is not part of the margins",
           "the bodies of the model are rigid: what bends in them, and the other plane, is not known to it"};

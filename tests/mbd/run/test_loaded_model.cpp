@@ -249,7 +249,7 @@ TEST_CASE("a record is in the units of its header, and open if it ends within an
   CHECK_THROWS_WITH_AS(impulse("t [s],f [furlongs of hay]" + rows), doctest::Contains("is not known: give it by 'unit'"), ModelError);
   CHECK_THROWS_WITH_AS(impulse("t [s],f [kN]" + rows, "unit = \"m/s^2\"\n"), doctest::Contains("but the column says [kN]"), ModelError);
   CHECK(impulse("t [s],f [-]" + rows) == doctest::Approx(0.2));
-  // What stands in parentheses is a unit or a part of the name: asked for where it makes a difference.
+  // Parentheses may hold a unit or a part of the name, so the reader asks for the unit where the two give different values.
   CHECK_THROWS_WITH_AS(impulse("t,f (kN)" + rows), doctest::Contains("column 'f (kN)' may be in the unit in its parentheses"), ModelError);
   CHECK_THROWS_WITH_AS(impulse("t (ms),f" + rows), doctest::Contains("say which by 'time_unit'"), ModelError);
   CHECK(impulse("t (s),f (kN)" + rows, "unit = \"kN\"\n") == doctest::Approx(200.0));

@@ -308,6 +308,20 @@ TEST_CASE("criteria that forbid slip or lifting are judged, and findings of a ru
   CHECK(rubber.reason.find("unlike any dry contact") != std::string::npos);
 }
 
+// A bushing that is unloaded in the given pose holds the block there at 1 g upwards: the feet open or touch, as rounding will.
+TEST_CASE("an event that is forbidden is open within rounding of its limit") {
+  const std::string bushed = block_on_deck(0.5, 1.0, 0.3,
+                                           "[[element]]\nkind = 'bushing'\nname = 'mount'\na = 'block'\nstiffness = [1e5, 1e5]\n"
+                                           "rotational_stiffness = 1e5\nb = { body = 'ground', at = [0, 1] }\n"),
+                    never = "[[acceptance]]\nname = 'stands'\nelement = '* foot'\nevent = 'opens'\nconsequence = 'reject'\n";
+  CHECK(proof_of(bushed + never, {0.0, 0.999 * k_g}).verdict == Verdict::hold);
+  const StaticProof at_limit = proof_of(bushed + never, {0.0, k_g});
+  CHECK(at_limit.verdict == Verdict::open);
+  CHECK(at_limit.reason.find("within rounding of its limit") != std::string::npos);
+  CHECK(proof_of(bushed, {0.0, k_g}).verdict == Verdict::hold);
+  CHECK(proof_of(bushed + never, {0.0, 1.001 * k_g}).verdict == Verdict::reject);
+}
+
 TEST_CASE("a foot beyond the edge of what carries it proves nothing") {
   const std::string pallet = "[[body]]\nname = 'pallet'\nmass = 100\ninertia = 10\nposition = [0, -0.1]\n"
                              "outline = [[-0.4, -0.1], [0.4, -0.1], [0.4, 0.1], [-0.4, 0.1]]\n"

@@ -165,6 +165,26 @@ TEST_CASE("a foot that presses beyond the edge of what it stands on is told") {
   }
 }
 
+// A weight of 981 N on ties of 500 N, at the start of a run that an action would change.
+TEST_CASE("equilibrium names ties that would break and actions whose condition is met") {
+  const Workbench bench;
+  const auto said = [&](const char* strength, const char* when) {
+    return steplap_does(
+               {"equilibrium",
+                bench.write("hanging.toml", std::string("[[body]]\nname = \"load\"\nmass = 100.0\ninertia = 1.0\n"
+                                                        "[[element]]\nkind = \"tie\"\nname = \"sling\"\na = \"load\"\n"
+                                                        "b = { body = \"ground\", at = [0.0, 1.0] }\nstiffness = 1e6\nstrength = ") +
+                                                strength + "\n[[action]]\nname = \"let go\"\nwhen = \"" + when +
+                                                "\"\ndo = [\"release sling\"]\n")})
+        .out;
+  };
+  const std::string breaks = said("500.0", "load.y < '-1 m'"), acts = said("2000.0", "0 s");
+  CHECK(has(breaks, "'sling' breaks: it would have to carry 196.2 % of its strength"));
+  CHECK_FALSE(has(breaks, "'let go'"));
+  CHECK(has(acts, "the condition of action 'let go' is met here"));
+  CHECK_FALSE(has(acts, "breaks"));
+}
+
 // ½ m v² = 50 J against ½ k w d² = 10 J for the whole thickness of 0.1 m.
 TEST_CASE("a contact that is pressed through a part is told, with its line and the time") {
   const Workbench bench;

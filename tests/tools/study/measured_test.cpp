@@ -149,7 +149,7 @@ TEST_CASE("what cannot be fitted between bounds is refused") {
   CHECK(has(same.err, "are the same"));
 }
 
-// Of ten values a law with a location of its own would begin at the smallest: nothing below it, and a tail without end above.
+// A law with a fitted location would begin at the smallest of ten values: no probability below it, and a tail that is far too heavy above.
 TEST_CASE("few values are fitted by a law that begins at zero") {
   StudyBench bench;
   std::vector<double> values;
