@@ -17,6 +17,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
 
 namespace steplap::assess {
 
@@ -24,6 +25,7 @@ namespace {
 
 constexpr double k_close = 1e-6;       // relative accuracy of a margin, from the accuracy of equilibria
 constexpr double k_same_forces = 5e-3; // difference up to which forces are the same after two loading paths to the same load
+constexpr double k_least_pull = 1e-3;  // share of a load; a machine that gives way to less is not held at all
 constexpr double k_just_below = 1e-3;  // the path from the opposite pull ends this fraction below the acceleration of the first limit
 
 // Returns true for channels that have a meaning at rest: those whose unit contains no rate.
@@ -153,14 +155,16 @@ private:
     }
     if (grown_.rest) return;
     const StaticLimit* const end = ray.limits.empty() || ray.limits.back().kind != LimitKind::ends ? nullptr : &ray.limits.back();
-    const bool is_explained = end && ray.is_explained;
-    if (is_explained)
+    case_.verdict = Verdict::open;
+    if (end && ray.limits.size() == 1 && end->acceleration < k_least_pull * a) {
+      case_.why = "no rest: the machine gives way to the least pull (" + end->text + "). Hold its vehicle by a drive";
+    } else if (end && ray.is_explained) {
+      case_.verdict = Verdict::reject;
       case_.why = limit_text(ray, ray.limits.size() - 1) + " at " + acceleration(end->acceleration) + ", " +
                   rounded_text(100.0 * end->acceleration / a, 3) + " % of this load";
-    else if (end && end->acceleration < 1e-3 * a)
-      case_.why = "no rest: the machine gives way to the least pull (" + end->text + "). Hold its vehicle by a drive";
-    else case_.why = "no rest is found, and whether there is none is not known: " + grown_.failure;
-    case_.verdict = is_explained ? Verdict::reject : Verdict::open;
+    } else {
+      case_.why = "no rest is found, and whether there is none is not known: " + grown_.failure;
+    }
   }
 
   void add_other_paths() {
@@ -384,7 +388,8 @@ std::string limit_text(const StaticRay& ray, std::size_t limit) {
   if (!slipping.empty()) return "'" + slipping + "' slips, and nothing else holds";
   if (!sliding.empty()) return "'" + sliding + "' slides away";
   if (!lifting.empty()) return "the machine tips over as '" + lifting + "' lifts";
-  return "the machine leaves its rest (" + one.text + ")";
+  constexpr std::string_view none = "no static equilibrium: ";
+  return "the machine leaves its rest (" + (one.text.starts_with(none) ? one.text.substr(none.size()) : one.text) + ")";
 }
 
 StaticProof prove_statically(const LoadedModel& loaded, const StaticPreset& preset, const StaticProofOptions& options) {

@@ -115,7 +115,7 @@ private:
     const double a = 0.5 * (low.a + high.a), error = 0.5 * (high.a - low.a);
     for (std::size_t w = 0; w < is_reached_.size(); ++w)
       if (is_reached_[w] == 0 && low.probe.left[w] <= k_at_limit * std::max(1.0, machine_.at_rest().left[w])) note(w, a, error);
-    found_.is_explained = !found_.limits.empty() && !high.probe.is_unknown;
+    found_.is_explained = !high.probe.is_unknown;
     found_.limits.push_back({LimitKind::ends, "", high.probe.failure, a, error});
   }
 

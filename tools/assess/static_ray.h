@@ -26,7 +26,7 @@ struct StaticLimit {
 /// All limits reached along one direction of pull.
 struct StaticRay {
   std::vector<StaticLimit> limits; ///< limits in ascending order of acceleration
-  /// false if equilibrium is lost without a limit being reached before, or if the search failed without a reason
+  /// false if the search ended without a rest and without proof that there is none
   bool is_explained = true;
   double largest = 0.0; ///< largest pull with an equilibrium, m/s²
 };

@@ -85,6 +85,24 @@ TEST_CASE("a block slides or tips at the closed form in every direction") {
   }
 }
 
+// The pressure of the edge of a box is triangular where it tips: the overlap m g/k = b² θ/2 has a base b and the resultant is b/3 from the
+// corner. With the lean θ the pull holds while a/g (h/2) <= w/2 - b/3 - θ h/2, whose maximum over b is at b³ = 6 h m g/k.
+TEST_CASE("a box on its polygon is rejected where it tips, although no limit of an element is reached before") {
+  const double w = 0.6, h = 2.0, overlap = 1000.0 * k_g / k_stiffness, base = std::cbrt(6.0 * h * overlap);
+  const double tips = k_g * (w / 2 - base / 3 - h * overlap / (base * base)) / (h / 2);
+  const std::string box = "[[body]]\nname = 'box'\nmass = 1000\ninertia = 363\nposition = [0, 1]\n"
+                          "outline = [[-0.3, -1], [0.3, -1], [0.3, 1], [-0.3, 1]]\n"
+                          "[[element]]\nkind = 'polygon_contact'\nname = 'deck'\na = 'box'\nstiffness = 1e9\ndissipation = 1\n"
+                          "static_friction = 0.5\n";
+  const double lean_error = 1e-2; // the closed form is of first order in the lean, 8e-3
+  for (const double sign : {1.0, -1.0}) {
+    CHECK(proof_of(box, {sign * tips * (1.0 - lean_error), 0.0}).verdict == Verdict::hold);
+    const StaticProof tipped = proof_of(box, {sign * tips * (1.0 + lean_error), 0.0});
+    CHECK(tipped.verdict == Verdict::reject);
+    CHECK(tipped.reason.find(sign > 0.0 ? "('box' turning clockwise" : "('box' turning counter-clockwise") != std::string::npos);
+  }
+}
+
 TEST_CASE("a load beyond the limit is rejected by what gives way, one below holds") {
   const std::string slides = block_on_deck(0.5, 1.0, 0.3), tips = block_on_deck(0.3, 1.0, 0.6);
   for (const double sign : {1.0, -1.0}) {
