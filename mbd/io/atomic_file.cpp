@@ -48,11 +48,13 @@ public:
     }
   }
 
-  // Flushes the content to disk and closes the file; a full disk may be reported only here.
+  // Flushes the content to disk and closes the file; a full disk may be reported only here. An existing target gives its permissions.
   void finish() {
     const ::mode_t mask = ::umask(0);
     ::umask(mask);
-    if (::fchmod(descriptor_, 0666 & ~mask) != 0) fail(target_, errno);
+    struct ::stat existing {};
+    const ::mode_t mode = ::stat(target_.c_str(), &existing) == 0 ? existing.st_mode & 07777 : 0666 & ~mask;
+    if (::fchmod(descriptor_, mode) != 0) fail(target_, errno);
     if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(target_, errno);
     const int descriptor = std::exchange(descriptor_, -1);
     if (::close(descriptor) != 0) fail(target_, errno);
@@ -89,7 +91,9 @@ void write_file(const std::string& path, const FileContent& content, IfExists if
   std::error_code ignored;
   if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path, ignored)) // renaming would replace a device by a file
     throw FileError(path, "cannot write '" + path + "': it is there, but is no file");
-  TemporaryFile file(path);
+  TemporaryFile file(if_exists == IfExists::replace && std::filesystem::is_symlink(path, ignored)
+                         ? std::filesystem::weakly_canonical(path).string() // the file is replaced, not the link
+                         : path);
   content([&file](std::string_view part) { file.write(part); });
   file.finish();
   file.become_target(if_exists);

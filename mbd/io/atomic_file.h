@@ -13,7 +13,8 @@ namespace steplap {
 enum class IfExists { refuse, replace };
 
 /// Writes `content` to the file `path`. Throws FileError if the file exists and `if_exists` is refuse, if the folder is not writable, or if
-/// the disk is full. After an error the file at `path` is unchanged. The temporary file is always removed.
+/// the disk is full. After an error the file at `path` is unchanged. The temporary file is always removed. A file that
+/// is replaced keeps its permissions; a link to it stays.
 void write_file(const std::string& path, const std::string& content, IfExists if_exists = IfExists::refuse);
 
 using FileSink = std::function<void(std::string_view part)>;

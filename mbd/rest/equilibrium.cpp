@@ -339,8 +339,10 @@ private:
     rest.bases = held_bases(rest);
     state_ = rest;
     // A body that slid away did not stand, even if it came to rest somewhere.
-    if (slid && std::abs(row_value(slid->friction()) - slid->from()) > k_stands * length_)
-      throw ElementFailure(none.what(), none.elements());
+    if (const double way = slid ? std::abs(row_value(slid->friction()) - slid->from()) : 0.0; way > k_stands * length_)
+      throw ElementFailure(std::string(none.what()) + ". It does not stand as given; released and strongly damped, it comes to rest after " +
+                               rounded(way) + " m of sliding",
+                           none.elements());
     result_ = {};
     slips_.clear();
     result_.iterations = iterations;
@@ -632,6 +634,7 @@ private:
 
   [[nodiscard]] std::string name_of(int f) const { return system_.element_names[system_.frictions[f].element]; }
   [[nodiscard]] std::string overload_text(const Slip& slip) const {
+    if (std::isinf(slip.used)) return "'" + name_of(slip.friction) + "' would have to hold and can hold nothing";
     if (!slip.is_least)
       return "'" + name_of(slip.friction) + "' would have to hold " + rounded(slip.used) + " times what it can" +
              (is_too_large_ ? " (as the load came to be shared; other ways are not looked for in scenes of this size)" : "");

@@ -77,12 +77,12 @@ TEST_CASE("records that are no record") {
 }
 
 TEST_CASE("written numbers read back as the same doubles") {
-  const std::vector<std::string> names{"t [s]", "a,b"};
+  const std::vector<std::string> names{"t [s]", "a,b", "#c"};
   CsvText csv(names);
-  const std::vector<double> row{0.1, -1.0 / 3.0}, tiny{5e-324, 1.7976931348623157e308};
+  const std::vector<double> row{0.1, -1.0 / 3.0, 1.0}, tiny{5e-324, 1.7976931348623157e308, 2.0};
   csv.add_row(row);
   csv.add_row(tiny);
-  CHECK(csv.text() == "t [s],\"a,b\"\n0.1,-0.3333333333333333\n5e-324,1.7976931348623157e+308\n");
+  CHECK(csv.text() == "t [s],\"a,b\",\"#c\"\n0.1,-0.3333333333333333,1\n5e-324,1.7976931348623157e+308,2\n");
   const CsvTable table = parse_csv(csv.text(), "x.csv");
   CHECK(table.columns[1] == std::vector<double>{row[1], tiny[1]});
   CHECK(table.columns[0] == std::vector<double>{row[0], tiny[0]});
@@ -185,6 +185,16 @@ TEST_CASE("files are whole or absent") {
   CHECK(content(path) == "one");
   write_file(path, "two", IfExists::replace);
   CHECK(content(path) == "two");
+  CHECK(files_in(folder) == 1);
+  // What a link names is replaced, not the link, and permissions stay.
+  const fs::path link = folder / "link.csv";
+  fs::create_symlink(path, link);
+  fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
+  write_file(link.string(), "three", IfExists::replace);
+  CHECK(fs::is_symlink(link));
+  CHECK(content(path) == "three");
+  CHECK(fs::status(path).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
+  fs::remove(link);
   CHECK(files_in(folder) == 1);
 
   const std::string nowhere = (folder / "no" / "out.csv").string();

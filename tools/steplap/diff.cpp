@@ -76,8 +76,10 @@ Model given_model(const std::string& path) { return read_given_model(path, progr
 
 // Returns the model of a run's folder. Reports it and returns nothing if this program cannot read the model.
 std::optional<Model> model_of(const std::string& folder, std::ostream& out) {
+  std::error_code ignored;
+  const bool is_partial = !fs::exists(fs::path(folder) / "model.toml", ignored); // of a run that stopped early
   try {
-    return given_model((fs::path(folder) / "model.toml").string());
+    return given_model((fs::path(folder) / (is_partial ? "partial_model.toml" : "model.toml")).string());
   } catch (const ModelError& error) {
     out << "The model of '" << folder << "' cannot be read by this version: " << error.diagnostics().front().message << "\n";
     return std::nullopt;

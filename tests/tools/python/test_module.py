@@ -96,8 +96,10 @@ def test_what_a_sample_cannot_be_is_said_and_has_no_number():
     assert np.isnan(row["active part.x high"]) and row["verdict"] == "open" and "stiffness" in row["trouble"]
     with pytest.raises(steplap.ModelError):
         model.samples({"element.nobody.stiffness": 1.0}, [("active part.x", "high")])
-    with pytest.raises(ValueError):
-        model.samples({"element.front block.stiffness": np.ones((2, 2))}, [("active part.x", "high")])
+    stiffness = "element.front block.stiffness"
+    for values in ({stiffness: np.ones((2, 2))}, {stiffness: np.ones(2), "gravity.1": np.ones(3)}, {stiffness: np.ones(0), "gravity.1": 1.0}):
+        with pytest.raises(ValueError, match="all of one length"):
+            model.samples(values, [("active part.x", "high")])
     for threads in (100000, 10**12):
         with pytest.raises((ValueError, TypeError), match="threads"):
             model.samples({"gravity.1": -9.81}, [("active part.x", "high")], threads=threads)

@@ -188,6 +188,8 @@ TEST_CASE("a failure keeps what there is under marked names and is exit code 4")
   CHECK(has(text_of(bench.at("out/bad/partial_summary.json")), "\"final_state\""));
   CHECK(count_lines(text_of(bench.at("out/bad/partial_trajectory.csv"))) > 1);
 
+  CHECK(has(steplap_does({"diff", bench.at("out/bad"), bench.at("out/bad")}).out, "The models are the same"));
+
   // Partial results are results too; a run that succeeds replaces them.
   CHECK(steplap_does({"simulate", bad, "-o", bench.at("out")}).code == 2);
   CHECK(steplap_does({"simulate", bad, "-o", bench.at("out"), "--force"}).code == 0);

@@ -75,9 +75,11 @@ def samples(self: Model, values: abc.Mapping[str, Any], responses: abc.Sequence[
     import numpy
     import pandas
     given = dict(values)
-    columns = numpy.broadcast_arrays(*(numpy.atleast_1d(numpy.asarray(column, dtype=float)) for column in given.values()))
-    if not columns or columns[0].ndim != 1:
+    columns = [numpy.atleast_1d(numpy.asarray(column, dtype=float)) for column in given.values()]
+    longest = max((column.size for column in columns), default=0)
+    if longest == 0 or any(column.ndim != 1 or column.size not in (1, longest) for column in columns):
         raise ValueError("values: one or more paths, each with a number or a row of numbers, all of one length")
+    columns = numpy.broadcast_arrays(*columns)
     numbers, verdicts, troubles = _samples(self, list(given), numpy.column_stack(columns), list(responses), threads, estimate)
     named = [f"{channel} {which}" for channel, which in responses]
     frame = pandas.DataFrame(dict(zip(given, columns)))
