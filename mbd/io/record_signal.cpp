@@ -1,10 +1,8 @@
 #include "mbd/io/record_signal.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/io/column_unit.h"
 #include "mbd/io/csv.h"
-#include "mbd/io/units.h"
-
-#include <cmath>
 
 namespace steplap {
 
@@ -22,45 +20,13 @@ struct Record : SignalDefinition {
   std::string sha256;
 };
 
-Quantity one(const std::string& unit, const std::string& wanted) { return parse_quantity("1 " + unit, wanted); }
-
-// Returns the unit in the header of a column, as parse_quantity() reads it; "" if there is none. No record is in grams.
-std::string unit_in_header(const std::string& text, const std::string& wanted) {
-  if (text == "-") return "";
-  return wanted != "s" && (text == "g" || text == "G") ? "gravity" : text;
-}
-
-// Refuses a column such as "force (kN)" without `key`: parentheses may hold a unit or a part of the name.
-void refuse_unit_in_parentheses(const Record& record, const std::string& key, const std::string& name, const std::string& wanted) {
-  const std::size_t open = name.rfind('(');
-  if (open == std::string::npos || name.back() != ')') return;
-  const Quantity found = one(unit_in_header(name.substr(open + 1, name.size() - open - 2), wanted), wanted);
-  if (found.problem.empty() && found.value != 1.0)
-    throw ModelError(record.where, "record '" + record.name + "': column '" + name +
-                                       "' may be in the unit in its parentheses: say which by '" + key + "'");
-}
-
-// Returns the factor to `wanted` from the unit that `given`, the field `key`, or else the header of the column names; 1 if neither does.
+// Returns the factor from the unit of a column to `wanted`, whose zero must be that of the unit.
 double unit_factor(const Record& record, const std::string& key, const std::string& given, const CsvTable& table, std::size_t column,
                    const std::string& wanted) {
-  constexpr double k_same = 1e-9; // two spellings of one unit may differ by rounding
-  const std::string in_header = table.units.empty() ? std::string() : table.units[column];
-  const std::string header = unit_in_header(in_header, wanted), &unit = given.empty() ? header : given;
-  if (given.empty() && header.empty() && !table.names.empty()) refuse_unit_in_parentheses(record, key, table.names[column], wanted);
-  if (unit.empty()) return 1.0;
-  if (!given.empty() && !header.empty() && one(header, wanted).problem.empty())
-    if (const Quantity ratio = one(given, header); !ratio.problem.empty() || !(std::abs(ratio.value - 1.0) <= k_same))
-      throw ModelError(record.where, "'" + key + "' of record '" + record.name + "' is '" + given + "', but the column says [" + in_header +
-                                         "]: drop '" + key + "', or correct the file");
-  const Quantity zero = parse_quantity("0 " + unit, wanted), factor = one(unit, wanted);
-  if (!factor.problem.empty() && given.empty())
-    throw ModelError(record.where,
-                     "the column's unit [" + in_header + "] of record '" + record.name + "' is not known: give it by '" + key + "'");
-  if (!factor.problem.empty()) throw ModelError(record.where, "'" + key + "' of record '" + record.name + "': " + factor.problem);
-  if (zero.value != 0.0)
-    throw ModelError(record.where,
-                     "'" + key + "' of record '" + record.name + "' must be a unit with its zero at zero, got '" + unit + "'");
-  return factor.value;
+  const UnitConversion unit = conversion_of(table, column, {"record '" + record.name + "'", key, given, record.where, wanted});
+  if (unit.shift != 0.0)
+    throw ModelError(record.where, "'" + key + "' of record '" + record.name + "' must be a unit with its zero at zero");
+  return unit.factor;
 }
 
 void check_ascending(const CsvTable& table, const std::vector<double>& times) {

@@ -16,6 +16,8 @@ namespace {
 constexpr double k_release = 0.25; // largest signal at the tapered ends of an event, as a fraction of its threshold
 // lowest threshold, as a fraction of the requested one; smaller signals are noise of a recorder without mechanical effect
 constexpr double k_floor = 0.03;
+// least mean that is sustained, m/s²: less is a slope of the road, or an offset
+constexpr double k_least_sustained = 0.1 * k_gravity;
 constexpr double k_same_margin = 0.02; // largest relative change of the margin between equal results
 constexpr double k_same_share = 0.1;   // largest change of the probability between equal results, as a fraction of its confidence interval
 // events that differ by less in length, s, count as equal: the difference has signals below a quarter of the threshold
@@ -82,8 +84,8 @@ public:
     for (int halvings = 1; same < k_needed && halvings <= k_most_halvings && is_lower(halvings); ++halvings) {
       Level before = level_now(halvings - 1);
       const bool fits = load(halvings);
-      if (fits && are_same(before, a_)) {
-        ++same;
+      if (fits && are_same(before, a_)) { // no evidence, unless strength alone decides: weaker signals move nothing either
+        if (!reference.outcome.summary.moves) ++same;
         continue;
       }
       if (!fits || length() > affordable_) {
@@ -221,6 +223,7 @@ EventRules rules_at(const RecordEvents& record, const std::string& used, int hal
     if (!is_used) each[i] = rules.threshold;
     else if (greatest > least_threshold(record))
       each[i] = std::max(least_threshold(record), std::min(rules.threshold, k_below * greatest) / std::exp2(halvings));
+    if (is_used && halvings > 0) rules.sustained[i] = std::max(k_least_sustained, k_release * each[i]);
     has_any |= greatest > each[i];
   }
   if (!has_any && most >= 0.0) { // the axis has only noise: its largest value alone is an event

@@ -100,6 +100,9 @@ static void look(const Model& whole, const System& system, const RunResult& resu
     if (now.first_slip.empty()) now.first_slip = "'" + joint.joint + "' slips in event " + std::to_string(event + 1);
   }
   now.lifts = std::any_of(result.events.begin(), result.events.end(), [](const Event& e) { return e.kind == EventKind::opens; });
+  now.moves = now.slips || now.lifts || std::any_of(result.events.begin(), result.events.end(), [](const Event& e) {
+                return is_slip(e.kind) || e.kind == EventKind::breaks;
+              });
   worsen(outcome.summary, now);
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 /// Settings of a "fit" study.
 struct FitSettings : KindSettings {
-  long starts = 8;       ///< number of candidate start points; the search starts from the best of them
+  long starts = 50;      ///< number of candidate start points; the search starts from the best of them
   long iterations = 100; ///< limit for one search
   double confidence = 0.95;
 };

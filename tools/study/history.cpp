@@ -1,6 +1,7 @@
 #include "tools/study/history.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/io/column_unit.h"
 #include "mbd/io/csv.h"
 #include "mbd/io/units.h"
 
@@ -12,19 +13,6 @@
 namespace steplap::study {
 
 namespace {
-
-// Conversion of a number in `unit` to the wanted unit: factor and shift.
-struct Conversion {
-  double factor = 1.0, shift = 0.0;
-};
-
-Conversion conversion(const Node& entry, const char* key, const std::string& unit, const std::string& wanted,
-                      std::vector<Diagnostic>& problems) {
-  if (unit.empty() || unit == wanted) return {};
-  const Quantity zero = parse_quantity("0 " + unit, wanted), one = parse_quantity("1 " + unit, wanted);
-  if (!one.problem.empty()) problems.push_back({entry.find(key)->where(), "'" + std::string(key) + "': " + one.problem});
-  return {one.value - zero.value, zero.value};
-}
 
 std::optional<double> noise_of(const Node& entry, const History& h, const std::string& unit, std::vector<Diagnostic>& problems) {
   if (h.noise_text.empty()) return {};
@@ -54,8 +42,6 @@ void load_history(const Node& entry, const StudyModel& model, History& h, std::v
                         "no channel of model '" + model.name + "' is called '" + h.channel + "'" + did_you_mean(h.channel, names)});
     return;
   }
-  const Conversion time = conversion(entry, "time_unit", h.time_unit, "s", problems);
-  const Conversion value = conversion(entry, "unit", h.unit, channel->unit, problems);
   h.noise = noise_of(entry, h, channel->unit, problems);
   h.channel_unit = channel->unit;
   if (problems.size() != before) return;
@@ -65,6 +51,11 @@ void load_history(const Node& entry, const StudyModel& model, History& h, std::v
     const Node *const time_node = entry.find("time"), *const column_node = entry.find("column");
     const std::size_t t = table.column(h.time, time_node ? time_node->where() : where);
     const std::size_t y = table.column(h.column, column_node ? column_node->where() : where);
+    const auto conversion = [&](const char* key, const std::string& given, std::size_t column, const std::string& wanted) {
+      const Node* const field = entry.find(key);
+      return conversion_of(table, column, {"history '" + h.name + "'", key, given, field ? field->where() : where, wanted});
+    };
+    const UnitConversion time = conversion("time_unit", h.time_unit, t, "s"), value = conversion("unit", h.unit, y, channel->unit);
     for (std::size_t i = 0; i < table.columns[t].size(); ++i) {
       const double at = time.factor * table.columns[t][i] + time.shift;
       if ((h.from && at < *h.from) || (h.to && at > *h.to)) continue;

@@ -1,6 +1,7 @@
 #include "tools/study/measured_law.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/io/column_unit.h"
 #include "mbd/io/csv.h"
 
 #include <openturns/BetaFactory.hxx>
@@ -30,7 +31,10 @@ namespace {
 std::vector<double> values_of(const Variable& v) {
   const CsvTable table = read_csv(v.measured, v.where);
   const std::size_t column = table.columns.size() == 1 && v.column.empty() ? 0 : table.column(v.column, v.where);
-  const std::vector<double>& values = table.columns[column];
+  std::vector<double> values = table.columns[column];
+  const std::string unit = v.unit.empty() && !v.is_factor ? "*" : v.unit;
+  const UnitConversion conversion = conversion_of(table, column, {"variable '" + v.name + "'", "", "", v.where, unit});
+  for (double& value : values) value = conversion.factor * value + conversion.shift;
   constexpr std::size_t k_fewest = 5;
   if (values.size() < k_fewest)
     complain(v, "'" + v.measured + "' has " + std::to_string(values.size()) + " values: too few for a distribution");

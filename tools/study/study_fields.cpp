@@ -103,7 +103,7 @@ FieldTable history_fields() {
   t.add("time", &History::time).doc("column of the times, by name or number");
   t.add("column", &History::column).doc("column of the measured values, by name or number");
   t.add("unit", &History::unit).doc("of the measured values; the channel's if not given");
-  t.add("time_unit", &History::time_unit).doc("of the times; s if not given");
+  t.add("time_unit", &History::time_unit).doc("of the times; if not given that in brackets in the header, or s");
   t.add("from", &History::from).in("s").not_negative().doc("earlier rows are left out");
   t.add("to", &History::to).in("s").not_negative().doc("later rows are left out");
   t.add("noise", &History::noise_text)

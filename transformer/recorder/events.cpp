@@ -9,6 +9,7 @@ namespace steplap {
 
 namespace {
 
+constexpr double k_mean_time = 0.2; // time constant of EventRules::sustained, s: ten times shorter than braking
 constexpr std::size_t k_longest = std::size_t{1} << 18U; // largest number of samples of a window: a minute at 4 kHz
 
 std::size_t greatest(std::span<const double> samples) {
@@ -73,6 +74,7 @@ void ShockFinder::begin(const RecordLayout& layout, double rate) {
 void ShockFinder::begin_segment(std::size_t line) {
   forget_all_but(0);
   is_inside_ = is_event_ = false;
+  means_ = {};
   ++segment_;
   line_ = line;
 }
@@ -96,7 +98,8 @@ void ShockFinder::put(double t, const double* plain, const double* filtered) {
     window_.plain[i].push_back(plain[i]);
     window_.filtered[i].push_back(filtered[i]);
     is_stirred |= std::abs(filtered[i]) > rules_.release * thresholds_[i];
-    is_event_ |= std::abs(filtered[i]) > thresholds_[i];
+    means_[i] += (filtered[i] - means_[i]) * -std::expm1(-1.0 / (k_mean_time * window_.rate));
+    is_event_ |= std::abs(filtered[i]) > thresholds_[i] || std::abs(means_[i]) > rules_.sustained[i];
   }
   if (is_stirred && !is_inside_) {
     forget_all_but(kept_ + 1);

@@ -19,6 +19,9 @@ struct EventRules {
   double merge = 0.3;                        ///< time, s, within which a new exceedance belongs to the same event
   std::optional<std::array<double, 3>> each; ///< thresholds of single axes, m/s²; none: `threshold` for all
   double release = 1.0; ///< fraction of its threshold below which each axis must be before an event begins and after it ends
+  /// Mean of an axis over about 0.2 s that is an event as well, m/s²: braking that pushes for seconds moves more than a short peak.
+  std::array<double, 3> sustained{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+                                  std::numeric_limits<double>::infinity()};
   static constexpr double k_default_threshold = 9.80665;
 };
 
@@ -74,6 +77,7 @@ private:
   Found found_;
   std::size_t axes_ = 0, kept_ = 0, count_ = 0, segment_ = 0, line_ = 0;
   std::array<double, 3> thresholds_{};
+  std::array<double, 3> means_{}; ///< of the axes, weighted exponentially, m/s²
   bool is_inside_ = false, is_event_ = false; ///< is_inside_: above the release level; is_event_: also above the threshold
   double last_stir_ = 0.0;
   /// Number of samples of the window that belong to the event; number up to the last one above the release level.
