@@ -3,10 +3,13 @@
 #include "mbd/base/number_text.h"
 #include "mbd/io/column_unit.h"
 #include "mbd/io/csv.h"
+#include "mbd/io/units.h"
 
 namespace steplap {
 
 namespace {
+
+constexpr double k_noise = 0.5; // largest acceleration that is noise of a recorder, m/s²
 
 struct Record : SignalDefinition {
   std::string file;
@@ -27,6 +30,12 @@ double unit_factor(const Record& record, const std::string& key, const std::stri
   if (unit.shift != 0.0)
     throw ModelError(record.where, "'" + key + "' of record '" + record.name + "' must be a unit with its zero at zero");
   return unit.factor;
+}
+
+bool is_acceleration(const Record& record, const CsvTable& table, std::size_t column) {
+  const std::string in_header = table.units.empty() ? std::string() : table.units[column];
+  const std::string& unit = record.unit.empty() ? in_header : record.unit;
+  return unit == "g" || unit == "G" || (!unit.empty() && parse_quantity("1 " + unit, "m/s^2").problem.empty());
 }
 
 void check_ascending(const CsvTable& table, const std::vector<double>& times) {
@@ -53,7 +62,13 @@ Signal build_record(const SignalDefinition& definition) {
   if (record.after != "zero") return Signal(std::move(pieces));
   pieces.back().c[0] = 0.0;
   Signal signal(std::move(pieces));
-  signal.doubt_cut_end();
+  // Only of an acceleration it is known that nothing acted before it was measured: a record without a unit may be a table of anything.
+  if (is_acceleration(record, table, column)) {
+    signal.doubt_cut_end(k_noise);
+    signal.doubt_cut_begin(k_noise);
+  } else {
+    signal.doubt_cut_end();
+  }
   return signal;
 }
 

@@ -479,18 +479,27 @@ std::optional<Signal::Jump> Signal::first_jump(DriveLevel level, double from, do
   return std::nullopt;
 }
 
-void Signal::doubt_cut_end() {
-  constexpr double k_much = 0.2; // of the largest value; what rattles after an event stays below
-  if (pieces_.size() < 2) return;
-  const double last = std::abs(values_at(pieces_, pieces_.size() - 1).before);
-  double peak = last;
+// `text`: the doubt, with the share of the largest value in percent.
+void Signal::doubt_cut(double t, double value, double noise, const char* text) {
+  constexpr double k_much = 0.2; // of the largest value; what rattles before and after an event stays below
+  double peak = std::abs(value);
   for (const Piece& piece : pieces_) peak = std::max(peak, std::abs(piece.c[0]));
-  if (!(last > k_much * peak)) return;
-  char text[120];
-  std::snprintf(text, sizeof text,
-                "the record ends at %.0f %% of its largest value, within an event: give what came after, or end the run there",
-                100.0 * last / peak);
-  add_doubt(pieces_.back().start, text);
+  if (!(std::abs(value) > k_much * peak) || peak <= noise) return;
+  char words[160];
+  std::snprintf(words, sizeof words, text, 100.0 * std::abs(value) / peak);
+  add_doubt(t, words);
+}
+
+void Signal::doubt_cut_end(double noise) {
+  if (pieces_.size() > 1)
+    doubt_cut(pieces_.back().start, values_at(pieces_, pieces_.size() - 1).before, noise,
+              "the record ends at %.0f %% of its largest value, within an event: give what came after, or end the run there");
+}
+
+void Signal::doubt_cut_begin(double noise) {
+  if (pieces_.size() > 1)
+    doubt_cut(pieces_.front().start, pieces_.front().c[0], noise,
+              "the record begins at %.0f %% of its largest value, within an event: give what came before");
 }
 
 } // namespace steplap

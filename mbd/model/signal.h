@@ -105,11 +105,15 @@ public:
   [[nodiscard]] const std::vector<Doubt>& doubts() const { return doubts_; }
   /// Adds a doubt.
   void add_doubt(double t, std::string text) { doubts_.push_back({t, std::move(text)}); }
-  /// Adds a doubt if the last value before the final jump to zero is a large part of the largest one: the record ends within an event.
-  void doubt_cut_end();
+  /// Adds a doubt if the last value before the final jump to zero is a large part of the largest one: the record ends within an event. A
+  /// largest value up to `noise` is none.
+  void doubt_cut_end(double noise = 0.0);
+  /// Adds a doubt if the first value, which comes after zero, is such a part.
+  void doubt_cut_begin(double noise);
 
 private:
   [[nodiscard]] const Piece* piece_at(double t) const;
+  void doubt_cut(double t, double value, double noise, const char* text);
   void accumulate_integrals();
   std::vector<Piece> pieces_;
   std::vector<double> breakpoints_;

@@ -37,7 +37,7 @@ bool applies_to_rows(const DecisionCriterion& c, const RecordEvents& record) {
 }
 
 double value_of(const DecisionCriterion& c, const AxisEvent& axis) {
-  if (c.quantity == "velocity_change") return std::abs(axis.velocity_change);
+  if (c.quantity == "velocity_change") return axis.largest_change;
   return std::abs(c.bandwidth == "100 Hz" ? axis.at_cfc60 : c.bandwidth == "17 Hz" ? axis.at_cfc10 : axis.peak);
 }
 
@@ -116,6 +116,11 @@ Reason judge_reading(const DecisionCriterion& c, const Assessment& a) {
   if (largest.value > *c.at_most)
     return judged(c, outcome_of(c), what + shown(largest.value) + where + ", more than " + shown(*c.at_most) + ".",
                   largest.value / *c.at_most);
+  const auto is_list = [](const RecordEvents& record) { return record.recording.layout.is_peaks; };
+  if (!largest.is_known && std::any_of(a.records.begin(), a.records.end(), is_list))
+    return judged(c, Decision::open,
+                  "A list of peaks does not say up to which frequency it was measured, nor what it left out, so '" + c.name +
+                      "' cannot be met by it.");
   if (!largest.is_known)
     return judged(c, Decision::open, "The records lack data that '" + c.name + "' requires: an axis, or high frequencies.");
   if (largest.may_be_exceeded_below)

@@ -243,6 +243,7 @@ RecordEvents read_without_events(const std::string& file, const EventReading& re
   record.bandwidth = std::min(first.conditioner().bandwidth(), stated_low_pass(record));
   record.is_filtered = reading.frequency_class.has_value();
   record.greatest = signal.greatest();
+  record.sustained = signal.sustained();
   if (rest) check_rest(*rest, record);
   find_missing_evidence(first.axes(), signal, record);
   if (!reading.gravity || *reading.gravity != "none") refuse_gravity_as_shock(record);

@@ -57,6 +57,7 @@ struct RecordEvents {
   std::array<double, 3> rest{};      ///< reading at rest of each axis, m/s²: mean over the interval of --rest, otherwise median of the
                                      ///< first second
   std::array<double, 3> greatest{};  ///< largest magnitude of each axis, filtered, m/s²
+  std::array<double, 3> sustained{}; ///< largest magnitude of each axis in the mean over about 0.2 s, m/s²
   std::vector<MissingEvidence> missing;
   std::optional<std::int64_t> clock_ns; ///< ns since 1970 at time 0 of the record; none if unknown
   bool clock_has_zone = false;

@@ -12,6 +12,7 @@ namespace {
 // length of the inspected ends, s: half a period of 10 Hz, so that a zero crossing at the end does not hide a shock
 constexpr double k_edge = 0.05;
 constexpr std::size_t k_least_edge = 3;     // smallest length, samples; a single one may be a zero crossing
+constexpr double k_quiet = 0.02;            // length of the outermost part, s: if nothing is felt there, a shock begins or ends after it
 constexpr double k_near = 0.5;              // length of the interval next to an end, to which it is compared, s
 constexpr double k_rises = 5.0;             // ratio of the largest values in both that noise does not reach
 constexpr double k_felt = 0.05 * k_gravity; // smallest magnitude of a shock at an end, m/s²
@@ -20,16 +21,23 @@ constexpr double k_felt = 0.05 * k_gravity; // smallest magnitude of a shock at 
 
 void SignalWatch::begin(const RecordLayout& layout, double rate) {
   axes_ = layout.axes.size();
+  rate_ = rate;
   for (std::size_t i = 0; i < axes_; ++i) letters_[i] = layout.axes[i].axis;
   edge_ = std::max(k_least_edge, static_cast<std::size_t>(std::ceil(k_edge * rate)));
   near_ = edge_ + static_cast<std::size_t>(std::ceil(k_near * rate));
   last_.assign(near_, {});
 }
 
-void SignalWatch::begin_segment(std::size_t) { samples_ = 0; }
+void SignalWatch::begin_segment(std::size_t) {
+  samples_ = 0;
+  means_ = {};
+}
 
 void SignalWatch::put(double t, const double* plain, const double* filtered) {
-  for (std::size_t i = 0; i < axes_; ++i) greatest_[i] = std::max(greatest_[i], std::abs(filtered[i]));
+  for (std::size_t i = 0; i < axes_; ++i) {
+    greatest_[i] = std::max(greatest_[i], std::abs(filtered[i]));
+    sustained_[i] = std::max(sustained_[i], std::abs(means_[i].put(filtered[i], rate_)));
+  }
   if (samples_ == 0) begin_ = t;
   std::copy(plain, plain + axes_, last_[samples_++ % near_].begin());
   t_ = t;
@@ -55,6 +63,8 @@ void SignalWatch::inspect(bool is_begin) {
     const double at_end = is_begin ? largest(i, 0, edge) : largest(i, kept - edge, kept);
     const double next = is_begin ? largest(i, edge, kept) : largest(i, 0, kept - edge);
     if (at_end <= level_ && (at_end <= k_felt || kept < near_ || at_end <= k_rises * next)) continue;
+    const std::size_t outer = std::min(edge, std::max(k_least_edge, static_cast<std::size_t>(std::ceil(k_quiet * rate_))));
+    if (outer < edge && (is_begin ? largest(i, 0, outer) : largest(i, kept - outer, kept)) <= k_felt) continue;
     if (end_.count++ == 0) end_ = {is_begin, is_begin ? begin_ : t_, at_end, letters_[i], 1};
     return;
   }

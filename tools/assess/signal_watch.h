@@ -3,6 +3,7 @@
 #pragma once
 
 #include "transformer/recorder/conditioner.h"
+#include "transformer/recorder/running_mean.h"
 
 #include <array>
 #include <cstddef>
@@ -14,7 +15,7 @@ namespace steplap::assess {
 class SignalWatch : public SignalSink {
 public:
   /// A record begins or ends during a shock if the first or last 50 ms of a segment exceed `level`, m/s², or are at least five times as
-  /// large as the half second next to them.
+  /// large as the half second next to them, unless their outermost 20 ms are at rest.
   explicit SignalWatch(double level) : level_(level) {}
 
   /// A begin or end of a segment during a shock.
@@ -28,6 +29,8 @@ public:
   [[nodiscard]] const End& first_end() const { return end_; }
   /// Returns the largest magnitude of each axis, filtered, m/s².
   [[nodiscard]] const std::array<double, 3>& greatest() const { return greatest_; }
+  /// Returns the largest magnitude of each axis in the mean over about 0.2 s (RunningMean), m/s².
+  [[nodiscard]] const std::array<double, 3>& sustained() const { return sustained_; }
 
   void begin(const RecordLayout& layout, double rate) override;
   void begin_segment(std::size_t line) override;
@@ -41,7 +44,9 @@ private:
   std::size_t axes_ = 0;
   std::size_t edge_ = 0, near_ = 0; ///< lengths in samples: of an end; of an end and the interval next to it
   std::array<char, 3> letters_{};
-  std::array<double, 3> greatest_{};
+  std::array<double, 3> greatest_{}, sustained_{};
+  std::array<RunningMean, 3> means_;
+  double rate_ = 0.0;
   std::vector<std::array<double, 3>> last_; ///< ring buffer of the last `near_` samples of the segment
   std::size_t samples_ = 0;
   double begin_ = 0.0, t_ = 0.0;

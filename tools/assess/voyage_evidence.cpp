@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace steplap::assess {
 
@@ -25,15 +26,20 @@ void find_axes(Assessment& a) {
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (is_used(i)) seen = std::max(seen, record.greatest[i]);
     // The largest reading of an axis that drives no model must be below a shock, or below a quarter of one if it exceeds half of `seen`, as
-    // for a recorder that was turned by 27° or more.
+    // for a recorder that was turned by 27° or more. Its mean must stay below a quarter of a shock whatever the other axes read: braking and
+    // curves push for seconds.
     constexpr double k_turned = 0.25, k_half = 0.5;
-    for (std::size_t i = 0; i < axes.size(); ++i)
-      if (!is_used(i) && record.greatest[i] > (record.greatest[i] > k_half * seen ? k_turned : 1.0) * shock_level(record.rules))
-        a.missing.push_back({Evidence::axis,
-                             "Axis " + std::string(1, axes[i]) + " of '" + record.file + "' reads up to " +
-                                 rounded_text(record.greatest[i] / k_gravity, 3) +
-                                 " g and drives no model: what these shocks did is not known.",
-                             "Give a model of that plane, or correct the axes of [[recorder]] if the recorder was turned."});
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      const double level = shock_level(record.rules), most = record.greatest[i];
+      const bool is_shock = most > (most > k_half * seen ? k_turned : 1.0) * level, is_sustained = record.sustained[i] > k_turned * level;
+      if (is_used(i) || !(is_shock || is_sustained)) continue;
+      a.missing.push_back({Evidence::axis,
+                           "Axis " + std::string(1, axes[i]) + " of '" + record.file + "' reads up to " +
+                               rounded_text(most / k_gravity, 3) + " g" +
+                               (is_shock ? "" : ", " + rounded_text(record.sustained[i] / k_gravity, 2) + " g in the mean over 0.2 s,") +
+                               " and drives no model: what these shocks did is not known.",
+                           "Give a model of that plane, or correct the axes of [[recorder]] if the recorder was turned."});
+    }
     constexpr std::size_t k_axes = 3;
     if (axes.size() < k_axes)
       a.missing.push_back({Evidence::axis,
@@ -57,11 +63,13 @@ bool refilter(Assessment& other, double factor) {
     const bool is_whole = frequency_class > highest;
     if (is_whole && factor > 1.0 && !record.is_filtered) return false;
     if (is_whole && factor < 1.0) frequency_class = highest;
-    for (RecordedEvent& event : record.events)
+    for (RecordedEvent& event : record.events) {
       for (std::size_t i = 0; i < record.recording.layout.axes.size(); ++i) {
         event.window.filtered[i] = event.window.plain[i];
         if (!is_whole || factor < 1.0) ChannelFilter(frequency_class, record.rate).apply(event.window.filtered[i]);
       }
+      event.event.axes = describe_event(event.window, record.recording.layout.axes.size()).axes;
+    }
   }
   return true;
 }
@@ -88,7 +96,7 @@ void find_bandwidth(const AssessmentOptions& options, Assessment& a) {
   const auto open = [&](const std::string& what) {
     a.missing.push_back(
         {Evidence::bandwidth,
-         "The decision depends on the frequencies that the models are driven by, up to " + rounded_text(lowest, 3) + " Hz: " + what + ".",
+         "The decision depends on the frequencies that are looked at, up to " + rounded_text(lowest, 3) + " Hz: " + what + ".",
          "Give a record with more samples per second, or a higher frequency class."});
   };
   for (const double factor : {0.5, 2.0}) {
@@ -98,7 +106,9 @@ void find_bandwidth(const AssessmentOptions& options, Assessment& a) {
     const std::vector<std::vector<DriveHistory>> histories = histories_of(a, other.records);
     const VoyageSummary summary = voyage_with(a.models, histories, *a.uncertain, a.uncertain->nominal(), a.shared).summary;
     const std::string where = std::string("with ") + (factor < 1.0 ? "half" : "twice") + " the bandwidth it is ";
+    std::swap(a.records, other.records); // criteria on readings are applied to those of the other bandwidth
     const Decision decision = decision_by_criteria(a, summary);
+    std::swap(a.records, other.records);
     if (decision != Decision::energise) return open(where + "\"" + name_of(decision) + "\"");
     if (factor > 1.0 && a.damage.runs > 0) {
       SamplingOptions sampling = options.sampling;

@@ -5,9 +5,6 @@
 
 namespace steplap {
 
-namespace {
-
-// Parses "3 g", "20 m/s^2", or "3" in g.
 double acceleration_of(const std::string& text, const char* option) {
   const auto end = text.find_first_not_of("0123456789.+-eE");
   const auto value = parse_number(trimmed_blanks(text.substr(0, end)), '.');
@@ -16,8 +13,6 @@ double acceleration_of(const std::string& text, const char* option) {
     throw UsageError(std::string(option) + " '" + text + "': give an acceleration above zero, such as \"3 g\" or \"20 m/s^2\"");
   return *value * unit->factor;
 }
-
-} // namespace
 
 double number_of(const ReadingOptions::Text& text, const char* option, double least, const char* unit) {
   const auto value = parse_number(*text, '.');

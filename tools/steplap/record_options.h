@@ -33,6 +33,8 @@ template <class Words> auto choice(const std::string& text, const char* option, 
 /// Convert the command-line arguments. Throw UsageError for invalid values.
 [[nodiscard]] ReadOptions read_options(const ReadingOptions& o);
 [[nodiscard]] EventRules event_rules(const ReadingOptions& o);
+/// Parses "3 g", "20 m/s^2", or "3" in g; m/s². `option` names it in messages.
+[[nodiscard]] double acceleration_of(const std::string& text, const char* option);
 /// Parses the two times of --rest, s.
 [[nodiscard]] std::array<double, 2> rest_stretch(const std::string& text);
 

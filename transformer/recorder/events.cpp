@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 namespace steplap {
 
 namespace {
 
-constexpr double k_mean_time = 0.2; // time constant of EventRules::sustained, s: ten times shorter than braking
 constexpr std::size_t k_longest = std::size_t{1} << 18U; // largest number of samples of a window: a minute at 4 kHz
 
 std::size_t greatest(std::span<const double> samples) {
@@ -26,6 +26,24 @@ double peak_in_class(const std::vector<double>& samples, double frequency_class,
 
 // Returns the fraction of the interval between two samples that is above the level; one of them is above, the other below.
 double share_beyond(double inside, double outside, double level) { return std::clamp((inside - level) / (inside - outside), 0.0, 1.0); }
+
+// Returns the largest difference of the integral of a signal within any second.
+double largest_change(const std::vector<double>& a, double rate) {
+  const auto second = static_cast<std::size_t>(std::ceil(rate));
+  std::vector<double> velocity(a.size(), 0.0);
+  for (std::size_t i = 1; i < a.size(); ++i) velocity[i] = velocity[i - 1] + 0.5 * (a[i - 1] + a[i]) / rate;
+  std::deque<std::size_t> low, high; // samples of the last second with ascending, with descending velocities
+  double most = 0.0;
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    while (!low.empty() && velocity[low.back()] >= velocity[i]) low.pop_back();
+    while (!high.empty() && velocity[high.back()] <= velocity[i]) high.pop_back();
+    low.push_back(i), high.push_back(i);
+    while (low.front() + second < i) low.pop_front();
+    while (high.front() + second < i) high.pop_front();
+    most = std::max(most, velocity[high.front()] - velocity[low.front()]);
+  }
+  return most;
+}
 
 AxisEvent describe_axis(const Window& window, std::size_t axis) {
   const std::vector<double>& a = window.filtered[axis];
@@ -44,6 +62,7 @@ AxisEvent describe_axis(const Window& window, std::size_t axis) {
   event.duration = (static_cast<double>(to - from) + lead + tail) * step;
   for (std::size_t i = from; i < to; ++i) event.velocity_change += 0.5 * (a[i] + a[i + 1]) * step;
   event.velocity_change += 0.5 * sign * step * (lead * (sign * a[from] + level) + tail * (sign * a[to] + level));
+  event.largest_change = std::max(std::abs(event.velocity_change), largest_change(a, window.rate));
   event.frequency = dominant_frequency(a, window.rate);
   event.at_cfc60 = peak_in_class(window.plain[axis], 60.0, window.rate);
   event.at_cfc10 = peak_in_class(window.plain[axis], 10.0, window.rate);
@@ -98,8 +117,7 @@ void ShockFinder::put(double t, const double* plain, const double* filtered) {
     window_.plain[i].push_back(plain[i]);
     window_.filtered[i].push_back(filtered[i]);
     is_stirred |= std::abs(filtered[i]) > rules_.release * thresholds_[i];
-    means_[i] += (filtered[i] - means_[i]) * -std::expm1(-1.0 / (k_mean_time * window_.rate));
-    is_event_ |= std::abs(filtered[i]) > thresholds_[i] || std::abs(means_[i]) > rules_.sustained[i];
+    is_event_ |= std::abs(filtered[i]) > thresholds_[i] || std::abs(means_[i].put(filtered[i], window_.rate)) > rules_.sustained[i];
   }
   if (is_stirred && !is_inside_) {
     forget_all_but(kept_ + 1);

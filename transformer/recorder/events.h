@@ -2,6 +2,7 @@
 #pragma once
 
 #include "transformer/recorder/conditioner.h"
+#include "transformer/recorder/running_mean.h"
 
 #include <array>
 #include <cstddef>
@@ -19,7 +20,7 @@ struct EventRules {
   double merge = 0.3;                        ///< time, s, within which a new exceedance belongs to the same event
   std::optional<std::array<double, 3>> each; ///< thresholds of single axes, m/s²; none: `threshold` for all
   double release = 1.0; ///< fraction of its threshold below which each axis must be before an event begins and after it ends
-  /// Mean of an axis over about 0.2 s that is an event as well, m/s²: braking that pushes for seconds moves more than a short peak.
+  /// Level of an axis's mean (RunningMean) that is an event as well, m/s²: braking that pushes for seconds moves more than a short peak.
   std::array<double, 3> sustained{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
                                   std::numeric_limits<double>::infinity()};
   static constexpr double k_default_threshold = 9.80665;
@@ -38,6 +39,7 @@ struct AxisEvent {
   double peak = 0.0, peak_time = 0.0; ///< largest magnitude with its sign, m/s²; its time, s
   double duration = 0.0;              ///< duration of the interval around the peak above a tenth of it, s
   double velocity_change = 0.0;       ///< integral of the acceleration over that interval, m/s
+  double largest_change = 0.0;        ///< largest change of the velocity within any second of the event, m/s; at least that of the peak
   double frequency = 0.0;             ///< frequency of the swings around the peak, Hz (dominant_frequency.h)
   /// Peak with CFC 60 (up to 100 Hz), m/s²; NaN if the sampling rate is too low.
   double at_cfc60 = std::numeric_limits<double>::quiet_NaN();
@@ -77,7 +79,7 @@ private:
   Found found_;
   std::size_t axes_ = 0, kept_ = 0, count_ = 0, segment_ = 0, line_ = 0;
   std::array<double, 3> thresholds_{};
-  std::array<double, 3> means_{}; ///< of the axes, weighted exponentially, m/s²
+  std::array<RunningMean, 3> means_;
   bool is_inside_ = false, is_event_ = false; ///< is_inside_: above the release level; is_event_: also above the threshold
   double last_stir_ = 0.0;
   /// Number of samples of the window that belong to the event; number up to the last one above the release level.

@@ -23,6 +23,8 @@ namespace {
 using Text = std::optional<std::string>;
 const std::vector<std::string> k_directions{"x", "-x", "y", "-y", "z", "-z"};
 
+constexpr double k_recorder_noise = 0.05 * k_gravity; // largest value of an axis that only reads noise, m/s²
+
 struct Recorder : SignalDefinition {
   std::string file, sha256;
   Text axis;
@@ -203,7 +205,8 @@ Signal signal_of(const Recorder& r, const Window& window, const std::array<doubl
   }
   pieces.back().c[0] = 0.0;
   Signal signal(std::move(pieces));
-  signal.doubt_cut_end();
+  signal.doubt_cut_end(k_recorder_noise);
+  signal.doubt_cut_begin(k_recorder_noise);
   return signal;
 }
 

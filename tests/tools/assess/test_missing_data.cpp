@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -140,6 +141,69 @@ TEST_CASE("what stays below the threshold is run where it is greatest") {
   CHECK(a.decision == Decision::inspect);
   // A record in which nothing happens is run as well, and the machine holds.
   CHECK(Case(k_only_models, record_csv(1000.0, 3.0, [](double t) { return 1e-3 * std::sin(1e5 * t); })).decision() == Decision::energise);
+}
+
+// A tick of 10 ms beyond the threshold, then braking at 0.24 g for 3 s: friction of 0.2 leaves 0.04 g, which moves the block by metres. Two
+// halvings of the threshold find nothing but the tick.
+TEST_CASE("braking below the threshold is run, although the event beyond it changes nothing for two halvings") {
+  const auto ramp = [](double t) { return std::clamp(std::min(2.0 * (t - 1.0), 2.0 * (5.0 - t)), 0.0, 1.0); };
+  const auto tick_and_brake = [&](double t) { return half_sine(t, 0.5, 0.01, 1.14 * k_gravity) - 0.24 * k_gravity * ramp(t); };
+  Case braking(k_only_models, record_csv(500.0, 6.0, tick_and_brake));
+  const auto slides_less_than = [](const std::string& way) {
+    return block_text(0.2, "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"" + way + "\"\n");
+  };
+  braking.block(slides_less_than("30 mm"));
+  const Assessment a = braking.made();
+  CHECK(a.decision == Decision::inspect);
+  CHECK(a.events.size() == 2);
+  braking.block(slides_less_than("10 m"));
+  CHECK(braking.decision() == Decision::energise);
+}
+
+TEST_CASE("an axis that drives no model is missing where it pushes for long, though another reads more than twice as much") {
+  const auto record = [](double duration) {
+    return rows(1000.0, 4.0, [=](double t) {
+      const double y = t > 1.0 && t < 1.0 + duration ? 0.9 : noise(2.0 * t);
+      return row_of(t, half_sine(t, 0.5, 0.1, 2.0) + noise(t), y, 1.0 - noise(t));
+    });
+  };
+  Case(k_only_models, record(1.0)).check_missing(Evidence::axis);
+  // 0.9 g for 20 ms is 0.09 g in the mean over 0.2 s, as a recorder reads of a shock along x that sits a little askew.
+  CHECK(Case(k_only_models, record(0.02)).decision() == Decision::energise);
+}
+
+// Three half sines of 0.5 g and 50 ms, apart by 50 ms, change the velocity by 3 · 2/π · 0.5 g · 50 ms in all, each by a third of it.
+TEST_CASE("a change of velocity is that of pulses that follow each other") {
+  const std::string limit = "name = \"change\"\n[[criterion]]\nname = \"change\"\nquantity = \"velocity_change\"\naxis = \"x\"\n"
+                            "outcome = \"inspect\"\nat_most = ";
+  const auto pulses = [](double t) {
+    double x = 0.0;
+    for (const double start : {0.5, 0.6, 0.7}) x += half_sine(t, start, 0.05, 1.2 * k_gravity);
+    return x;
+  };
+  const double change = 3.0 * 2.0 / std::numbers::pi * 1.2 * k_gravity * 0.05;
+  const std::string record = record_csv(1000.0, 2.0, pulses);
+  CHECK(Case(limit + std::to_string(0.99 * change) + "\n", record).decision() == Decision::inspect); // the trapezoidal rule: 1e-4
+  CHECK(Case(limit + std::to_string(1.01 * change) + "\n", record).decision() == Decision::energise);
+}
+
+TEST_CASE("a filter that decides about a peak leaves the decision open") {
+  // 8 g for 2 ms, of which CFC 60 leaves less than 3 g, and CFC 120 more.
+  Case filtered(k_peak, record_csv(5000.0, 2.0, [](double t) { return half_sine(t, 0.5, 0.002, 8.0 * k_gravity); }));
+  filtered.options.reading.frequency_class = 60.0;
+  const Assessment a = filtered.made();
+  CHECK(a.decision == Decision::open);
+  CHECK(Case::missing(a) == std::vector<Evidence>{Evidence::bandwidth});
+  filtered.options.reading.frequency_class = 120.0;
+  CHECK(filtered.decision() == Decision::inspect);
+}
+
+TEST_CASE("a record that rests for 30 ms before its shock does not begin within it") {
+  const auto begins = [](double rest) {
+    return record_csv(1000.0, 2.0, [=](double t) { return half_sine(t, rest, 0.1, 1.2 * k_gravity); });
+  };
+  CHECK(Case(k_only_models, begins(0.03)).decision() == Decision::energise);
+  Case(k_only_models, begins(-0.02)).check_missing(Evidence::cut);
 }
 
 TEST_CASE("events at any number of halvings hold all that is beyond their thresholds, once, and begin and end at rest") {

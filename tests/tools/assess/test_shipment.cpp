@@ -102,4 +102,13 @@ TEST_CASE("departure and arrival of the papers are the voyage, of which the shar
   backward.replace(backward.find("10:00:02"), 8, "09:00:00");
   CHECK(run(backward, "") == 2);
   CHECK(run("transformer = \"T-4711\"\n", "") == 12); // nobody says when the journey began
+  // The shock of 1.2 g is beyond a range of 1 g.
+  const auto of_range = [](const std::string& range) {
+    std::string papers = k_papers;
+    return papers.replace(papers.find("16 g"), 4, range);
+  };
+  CHECK(run(of_range("±1 g"), "") == 12);
+  CHECK(run(of_range("±1 g"), "--range '16 g'") == 2);   // said twice
+  CHECK(run(of_range("16 g"), "--range 156.9064") == 2); // m/s² without a unit are g
+  CHECK(run(of_range("see the label"), "") == 0);
 }

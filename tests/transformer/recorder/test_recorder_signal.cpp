@@ -133,6 +133,8 @@ TEST_CASE("a record that is clipped or ends within an event leaves a doubt") {
   CHECK(doubts(clipped, 0.0, {{"cfc", 10.0}}).find("axis x is at 1 g") != std::string::npos); // a filter hides the top
   CHECK(doubts(clipped, 0.7) == "");                                                          // the window begins after the pulse
   CHECK(doubts(cut, 0.0).find("ends at 100 % of its largest value") != std::string::npos);
+  CHECK(doubts(whole, 0.55).find("begins at 100 % of its largest value") != std::string::npos);
+  CHECK(doubts(whole, 0.7) == ""); // 0.01 g of noise
 }
 
 TEST_CASE("what a record leaves open is asked for") {

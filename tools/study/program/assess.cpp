@@ -72,9 +72,32 @@ std::vector<Evidence> accepted_evidence(const AssessOptions& options) {
   return accepted;
 }
 
-// Takes departure and arrival from the shipping document as the limits of the voyage.
+// Takes the range of the sensor from the shipping document, unless it is given. What does not begin with a number is only printed.
+void take_range(const std::string& file, AssessmentOptions& options) {
+  std::optional<double>& range = options.reading.read.range;
+  const bool is_given = range.has_value();
+  for (const ShippedRecorder& recorder : options.shipment.recorders) {
+    std::string text = recorder.range;
+    for (const std::string sign : {"±", "+/-"})
+      if (text.starts_with(sign)) text.erase(0, sign.size());
+    const std::size_t number = text.find_first_not_of(' ');
+    if (number == std::string::npos || std::string("0123456789.").find(text[number]) == std::string::npos) continue;
+    const double stated = acceleration_of(text, "--shipment: 'range'");
+    constexpr double k_same = 1e-6; // two spellings of one range
+    if (range && std::abs(*range - stated) > k_same * stated)
+      throw UsageError("--shipment: '" + file + "' says that the sensor reads up to " + recorder.range + ", " +
+                       (is_given
+                            ? "but --range says otherwise: leave --range out, or correct the papers"
+                            : "and of another recorder something else: say by --range how far the one of these records reads, and take "
+                              "the range out of the papers"));
+    range = stated;
+  }
+}
+
+// Takes the range, and departure and arrival as the limits of the voyage, from the shipping document.
 void take_shipment(const std::string& file, AssessmentOptions& options) {
   options.shipment = read_shipment(file);
+  take_range(file, options);
   const Shipment& s = options.shipment;
   if (s.departure.empty() || s.arrival.empty()) return;
   const std::optional<Voyage> voyage = parse_voyage(s.departure + ", " + s.arrival);
