@@ -35,9 +35,7 @@ GripShares::GripShares(const StepLapFriction& friction, const std::vector<const 
     const SheetPair& pair = friction.sheets()[i];
     Sheet sheet{interfaces[i]->pressure, pair.static_traction * overlaps.area_of(i), pair.transverse,
                 interfaces[i]->transverse_spread / interfaces[i]->pressure};
-    double least = 1.0;
-    for (const Vec2& vertex : overlaps.vertices_of(i)) least = std::min(least, 1.0 + pair.gradient.dot(vertex - pair.middle));
-    sheet.pressure *= least;
+    for (const Vec2& vertex : overlaps.vertices_of(i)) sheet.least = std::min(sheet.least, 1.0 + pair.gradient.dot(vertex - pair.middle));
     sheets_.push_back(sheet);
     corners_[overlaps.corner_of(i)].add(sheet);
     const std::string& part = interfaces[i]->part;
@@ -56,7 +54,7 @@ GripShares::GripShares(const StepLapFriction& friction, const std::vector<const 
 double GripShares::least_pressure(const PressureState& now) const {
   double least = std::numeric_limits<double>::infinity();
   for (const Sheet& sheet : sheets_)
-    least = std::min(least, sheet.pressure * (left_by_tilt(sheet.transverse, now) - sheet.spread * std::abs(now.tilt)));
+    least = std::min(least, sheet.pressure * (sheet.least + sheet.transverse * now.tilt - sheet.spread * std::abs(now.tilt)));
   return std::max(0.0, least * now.factor);
 }
 

@@ -36,10 +36,11 @@ public:
 
 private:
   struct Sheet {
-    double pressure = 0.0;   ///< smallest pressure in its overlap, Pa
+    double pressure = 0.0;   ///< pressure at the middle of its overlap, Pa
     double capacity = 0.0;   ///< capacity without transverse acceleration, N
     double transverse = 0.0; ///< relative change of the traction per m/s², as in SheetPair
     double spread = 0.0;     ///< largest deviation (±) of `transverse` among the sheets
+    double least = 1.0;      ///< smallest pressure in its overlap without transverse acceleration, as a fraction of `pressure`
   };
   struct Group {
     double share = 0.0;

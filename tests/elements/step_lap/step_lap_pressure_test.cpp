@@ -135,6 +135,19 @@ TEST_CASE("acceleration across the stack: one packet gains what another loses") 
   CHECK(std::abs(one.times("joint", "slips")[0] - 18.75 / 4.0) < 1e-9);
 }
 
+// 1e5 Pa at the middle, 5e5 Pa/m along 0.2 m: 5e4 Pa at the weak edge, of which 2000 Pa for each m/s² go. The middle has half of its pressure
+// when the edge has none.
+TEST_CASE("the weak edge of a pressure with a gradient loses as much as the middle by acceleration across the stack") {
+  const Run r = run_text(scene("end = 10.0\nintegrator = \"dop853\"", 2.5, "transverse_acceleration = \"across\"",
+                               "pressure_gradient = [5e5, 0.0]\ntransverse_pressure = -2000.0", tilting(40.0, 10.0)));
+  const std::vector<double> least = r.series("joint.least_pressure"), middle = r.series("joint.pressure");
+  for (std::size_t i = 0; i < least.size(); ++i) {
+    const double lost = 2000.0 * 10.0 * static_cast<double>(i);
+    CHECK(least[i] == doctest::Approx(std::max(0.0, 5e4 - lost)).epsilon(1e-12));
+    CHECK(middle[i] == doctest::Approx(1e5 - lost).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("an elastic joint that yields under a turning load follows fading and tilting pressures on the surface") {
   const std::string more = k_fading + tilting(20.0, 1.0) +
                            interface(k_yoke, k_limb, 0.5e5, 0.2, "transverse_pressure = -1500.0", "far packet") +
