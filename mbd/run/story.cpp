@@ -260,7 +260,10 @@ private:
           const JointErrors e = joint_errors(joint, *report_.run.loaded->system, report_.run.result, *estimate);
           error = portable::hypot(e.slid_x, e.slid_y);
         }
-        return StoryAmount{portable::hypot(joint.slid_x, joint.slid_y), "m", error};
+        StoryAmount most{portable::hypot(joint.slid_x, joint.slid_y), "m", error};
+        for (const char* axis : {".dx", ".dy"}) // a joint may slide out and back
+          if (const auto way = excursion(who + axis, true); way && way->value > most.value) most = *way;
+        return most;
       }
     return excursion(who + ".slide", true);
   }

@@ -230,18 +230,23 @@ void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate&
     const Kind& kind = kinds[range.channel->unit];
     if (is_located(range, kind) && is_exact(range, estimate.finest.ranges[c])) continue;
     ChannelError& error = estimate.channels[c];
-    const double floor = tolerance * kind.range + k_least_error * std::max(kind.largest, kind.scale);
-    const double spread = spread_of(range);
+    const double spread = spread_of(range), of_kind = tolerance * kind.range + k_least_error * std::max(kind.largest, kind.scale);
+    // Dimensionless numbers have no size in common: a margin near its pole says nothing about a share, nor about its own least value.
+    const auto floor_at = [&](double value) {
+      if (!range.channel->unit.empty()) return of_kind;
+      const double size = std::isfinite(value) ? std::max(1.0, std::abs(value)) : 1.0;
+      return tolerance * std::min(spread, size) + k_least_error * size;
+    };
     // In time stepping the position of an impact within a step is random, and a single extreme may agree by chance. The median error of all
     // channels with the same unit is therefore the least estimate.
     const double least = !has_located_events && std::isfinite(spread) ? kind.typical_error * spread : 0.0;
     const double resolution = std::isinf(range.resolution) ? k_unknown_error : range.resolution;
-    error.low = larger_error(larger_error(error.low, least), range.unsure_low) + floor + resolution;
-    error.high = larger_error(larger_error(error.high, least), range.unsure_high) + floor + resolution;
+    error.low = larger_error(larger_error(error.low, least), range.unsure_low) + floor_at(range.low.value) + resolution;
+    error.high = larger_error(larger_error(error.high, least), range.unsure_high) + floor_at(range.high.value) + resolution;
     if (range.is_low_singular && diverges(range, range.low, error.low)) error.low = k_unknown_error;
     if (range.is_high_singular && diverges(range, range.high, error.high)) error.high = k_unknown_error;
-    error.final += floor;
-    error.curve += floor;
+    error.final += floor_at(range.final);
+    error.curve += floor_at(range.largest().value);
     error.t_low += time;
     error.t_high += time;
     error.first_above_one += time;
