@@ -67,15 +67,23 @@ std::size_t finished_runs(const CrossCheck& check) {
   return static_cast<std::size_t>(std::count_if(check.runs.begin(), check.runs.end(), [](const CrossRun& r) { return r.failure.empty(); }));
 }
 
+// Two of six methods that reach the end may have in common what stops the others.
+bool has_opinions(const CrossCheck& check) { return finished_runs(check) >= 2 && 2 * finished_runs(check) > check.runs.size(); }
+
 std::string conclusion(const CrossCheck& check, double end) {
   if (finished_runs(check) < 2) return "NOT TO BE TRUSTED: there are no two opinions";
+  if (!has_opinions(check))
+    return "NOT TO BE TRUSTED: only " + std::to_string(finished_runs(check)) + " of " + std::to_string(check.runs.size()) +
+           " methods reach the end";
   if (check.outcome == CrossOutcome::disagree) return "NOT TO BE TRUSTED: methods disagree beyond their error estimates";
   if (check.outcome == CrossOutcome::vague && check.known_until == 0.0)
     return "no disagreement, but time stepping has no opinion: its steps are too coarse for what happens here";
   if (check.outcome == CrossOutcome::vague)
     return "no disagreement, but no comparison is possible after " + time_text(check.known_until) + " s of " + number_text(end) +
            " s: small differences grow as large as the motion";
-  return "all agree; the worst disagreement is " + small_text(check.worst_ratio) + " of what the estimates allow";
+  const std::size_t finished = finished_runs(check);
+  return (finished < check.runs.size() ? "all " + std::to_string(finished) + " that reach the end agree" : std::string("all agree")) +
+         "; the worst disagreement is " + small_text(check.worst_ratio) + " of what the estimates allow";
 }
 
 CrossCheckOptions options_for(const LoadedModel& loaded, const System& system, double cpu_limit) {
@@ -93,7 +101,7 @@ bool cross_check_one(const LoadedModel& loaded, double cpu_limit, Console& conso
   const std::unique_ptr<System> system = compile(loaded.model); // separate, because options of this check add channels to it
   add_audit_channels(*system, loaded.model);
   const CrossCheck check = cross_check(*system, initial_state_of(loaded), base, options_for(loaded, *system, cpu_limit));
-  const bool is_trusted = check.outcome != CrossOutcome::disagree && finished_runs(check) >= 2;
+  const bool is_trusted = check.outcome != CrossOutcome::disagree && has_opinions(check);
   for (const CrossRun& run : check.runs)
     if (!run.failure.empty()) log_warning("'" + loaded.path + "': " + run.setting.text() + ": " + run.failure);
   if (console.verbosity == Verbosity::quiet) return is_trusted;
