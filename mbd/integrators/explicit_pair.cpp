@@ -132,7 +132,8 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
   for (bool is_retry = false;; is_retry = true) {
     const bool is_last = begin_try(h, t_limit);
     passage.begin_try();
-    const double error = try_step(dynamics);
+    double error = std::numeric_limits<double>::infinity();
+    (void)try_evaluation(h_, [&] { error = try_step(dynamics); });
     if (!has_tried_crossing && approach_.is_ahead(dynamics.least_pivot())) [[unlikely]] {
       has_tried_crossing = true;
       h = cross_singularity(dynamics, left);

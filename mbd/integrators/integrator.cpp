@@ -3,7 +3,6 @@
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/integrators/scene_rate.h"
-#include "mbd/system/element_failure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +22,7 @@ constexpr double k_turned_share = 1e-4;
 // Joints inside clusters that are far from their limits are evaluated about twice within a step, at intervals of 0.25 of its length, but
 // not in its last 1/16, since they are evaluated at its end in any case.
 constexpr double k_rigid_joint_interval = 0.25, k_merged_end = 0.0625;
-// Shortest attempt, relative to time, after the constraints could not be satisfied at the end of a step.
+// Shortest attempt, relative to time, after the constraints could not be satisfied at the end of a step or an element has failed in it.
 constexpr double k_shortest_try = 1e-12;
 // Accuracy of positions and velocities that rounding permits: relative, and absolute in m, rad, m/s, rad/s.
 constexpr double k_finest_accuracy = 1e-12;
@@ -177,9 +176,10 @@ void Integrator::finish_step(Dynamics& dynamics) {
   is_restarted_ = false;
 }
 
+bool Integrator::is_shortest_try(double h) const { return h < k_shortest_try * rounding_time_scale(t0_, system_); }
+
 bool Integrator::try_finish_step(Dynamics& dynamics) {
-  // In the shortest attempt the failure itself is rethrown, because it is more informative than a message about the step length.
-  const bool is_shortest = h_ < k_shortest_try * rounding_time_scale(t0_, system_);
+  const bool is_shortest = is_shortest_try(h_);
   try {
     finish_step(dynamics);
     return true;
@@ -288,9 +288,10 @@ double Integrator::restrained_step(Dynamics& dynamics, double h) {
   double* const f = y + n_;
   for (int attempt = 0; attempt < k_most_tries; ++attempt) {
     for (int i = 0; i < n_; ++i) y[i] = y0_[i] + h * k0_[i];
-    dynamics.evaluate(Request::stage, t0_ + h, y, f);
-    double turned = 0.0;
-    for (int i = m; i < 2 * m; ++i) turned = std::max(turned, settings_.tolerance * weight_[i] * h * std::abs(f[i] - k0_[i]));
+    const bool is_evaluated = try_evaluation(h, [&] { dynamics.evaluate(Request::stage, t0_ + h, y, f); });
+    double turned = is_evaluated ? 0.0 : std::numeric_limits<double>::infinity();
+    for (int i = m; i < 2 * m && is_evaluated; ++i)
+      turned = std::max(turned, settings_.tolerance * weight_[i] * h * std::abs(f[i] - k0_[i]));
     if (turned <= 1.0) return attempt == 0 ? h : h / settings_.division;
     h *= std::isfinite(turned) ? std::max(k_most_shortened, 0.8 / std::sqrt(turned)) : k_most_shortened;
   }
@@ -303,14 +304,18 @@ double Integrator::first_step(Dynamics& dynamics, int order, double h_max) {
   double* y = scratch_.data();
   double* f = y + n_;
   double* change = f + n_;
+  constexpr double k_shorter = 0.1;
   for (int i = 0; i < n_; ++i) change[i] = i < dynamics.coordinate_count() ? y0_[i] - dynamics.layout().reference[i] : y0_[i];
   for (int i = 2 * dynamics.coordinate_count(); i < n_ - 2; ++i) change[i] -= system_.initial_inner[i - 2 * dynamics.coordinate_count()];
   const double size = error_norm(change) + 1.0 / settings_.tolerance * 1e-3;
   const double slope = error_norm(k0_);
   double h = slope > 0.0 ? 0.01 * size / slope : h_max;
   h = std::min(h, h_max);
-  for (int i = 0; i < n_; ++i) y[i] = y0_[i] + h * k0_[i];
-  dynamics.rates(t0_ + h, y, f);
+  const auto evaluate = [&] {
+    for (int i = 0; i < n_; ++i) y[i] = y0_[i] + h * k0_[i];
+    dynamics.rates(t0_ + h, y, f);
+  };
+  while (!try_evaluation(h, evaluate)) h *= k_shorter;
   for (int i = 0; i < n_; ++i) change[i] = (f[i] - k0_[i]) / h;
   const double curvature = std::max(slope, error_norm(change));
   const double h1 = curvature > 0.0 ? portable::pow(0.01 / curvature, 1.0 / (order + 1)) : h_max;

@@ -10,6 +10,7 @@
 #include "mbd/integrators/rate_rounding.h"
 #include "mbd/integrators/singular_crossing.h"
 #include "mbd/integrators/turn_limit.h"
+#include "mbd/system/element_failure.h"
 
 #include <algorithm>
 #include <limits>
@@ -172,6 +173,19 @@ protected:
   /// of the step.
   [[nodiscard]] double projected_error_norm(Dynamics& dynamics, double* error) const;
   [[nodiscard]] double first_step(Dynamics& dynamics, int order, double h_max);
+  /// Calls `evaluate` with a trial state, which may be far off the motion if the step is too long. Returns false if an element fails there:
+  /// the step, of length h, s, must then be shorter. Rethrows the failure if it cannot be.
+  template <class F> [[nodiscard]] bool try_evaluation(double h, const F& evaluate) const {
+    try {
+      evaluate();
+      return true;
+    } catch (const ElementFailure&) {
+      if (is_shortest_try(h)) throw;
+      return false;
+    }
+  }
+  /// Returns true if no step shorter than h, s, is tried after a failure: the failure itself says more than a message about the step.
+  [[nodiscard]] bool is_shortest_try(double h) const;
   /// Throws NumericalFailure if a step of length h, s, would not exceed the rounding errors of time.
   void refuse_shorter_than_rounding(double h) const;
   /// Returns the data of a singular crossing by a step of h_ from t0_.

@@ -276,7 +276,8 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
     h_ = is_last ? left : (2.0 * h > left ? 0.5 * left : h);
     t1_ = is_last ? t_limit : t0_ + h_;
     dynamics.reset_least_pivot();
-    double error = try_step(dynamics);
+    double error = std::numeric_limits<double>::infinity();
+    (void)try_evaluation(h_, [&] { error = try_step(dynamics); });
     if (!has_tried_crossing && approach_.is_ahead(dynamics.least_pivot())) [[unlikely]] {
       has_tried_crossing = true;
       if (cross_singularity(dynamics, left)) return note_end(dynamics);
