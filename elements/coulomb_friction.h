@@ -19,9 +19,9 @@ public:
   static constexpr double k_floor_acceleration = 3.6;
 
   std::vector<ContactIndex> contacts;
-  std::vector<RowSpec> feet; ///< rows at the rear-most and the front-most contact point; equal for a single contact
-  bool has_two_feet = false;
-  double level = 0.0; ///< θ_A − θ_B at which both feet touch, rad
+  std::vector<RowSpec> feet;               ///< rows at the contact points; of several feet from the rear-most to the front-most
+  std::vector<ContactIndex> foot_contacts; ///< contact of each foot if there are several, else empty
+  std::vector<double> levels; ///< θ_A − θ_B at which both feet of a pair touch, rad; at index rear · number of feet + front
   double mu_static = 0.0, mu_kinetic = 0.0;
   bool may_pull = false; ///< a contact may pull (law `literal`); friction ends where the sum of normal forces becomes zero
   /// Damping of the contacts, N s/m; mass of the lighter body, kg; distance of the contact from its centre of gravity, m.
@@ -58,21 +58,34 @@ public:
     } else {
       bound_events(e, wrench, event_value);
     }
-    event_value[2] = turn_to_other_foot(e, state);
+    event_value[2] = turn_to_other_foot<TapeNumber>(e, state, pressed_feet(e.mode));
     return true;
   }
   [[nodiscard]] double contact_point_event(const Evaluation& e, const FrictionState& state) const override {
-    return turn_to_other_foot(e, state);
+    return turn_to_other_foot<double>(e, state, pressed_feet(e.mode));
   }
-  void switch_contact_point(const Evaluation&, FrictionState& state) const override { state.foot = state.foot == 0 ? 1 : 0; }
+  void switch_contact_point(const Evaluation& e, FrictionState& state) const override {
+    if (foot_contacts.empty()) return;
+    const PressedFeet pressed = pressed_feet(e.mode);
+    const bool was_rear = state.foot == pressed.rear, was_front = state.foot == pressed.front;
+    // A foot at an end gives way to the other end, whatever the rounding of the angle; any other foot to the end that the angle chooses.
+    const bool is_rear = was_rear != was_front ? was_front : turn_of<double>(e, pressed) >= 0.0;
+    state.foot = is_rear ? pressed.rear : pressed.front;
+  }
+  [[nodiscard]] bool is_foot_wrong(const Evaluation& e, const FrictionState& state) const override {
+    return !foot_contacts.empty() && turn_to_other_foot<double>(e, state, pressed_feet(e.mode)) < 0.0;
+  }
   // The slip rates of two feet differ by the relative angular velocity times their difference in height along the normal of the line. Feet
-  // on one line are level when the foot changes, so slip rate and force are continuous; only the slip acceleration jumps, by the distance
-  // of the feet times the square of the angular velocity. The integration is restarted there, but no event is reported.
+  // on one line are level when the angle changes the foot, so slip rate and force are continuous; only the slip acceleration jumps, by the
+  // distance of the feet times the square of the angular velocity. The integration is restarted there, but no event is reported. If the
+  // foot changes because it opens, its contact reports that.
   [[nodiscard]] EventKind contact_switch_event(const FrictionState&, const FrictionState&) const override {
     // Tolerance of equal heights relative to the distance from the centre: rounding of coordinates in the file.
     constexpr double k_level_feet = 1e-12;
-    const double height = feet[1].direction.dot(feet[1].point_b - feet[0].point_b);
-    return has_two_feet && std::abs(height) <= k_level_feet * lever ? EventKind::none : EventKind::changes_foot;
+    const auto is_level = [this](const RowSpec& foot) {
+      return std::abs(foot.direction.dot(foot.point_b - feet[0].point_b)) <= k_level_feet * lever;
+    };
+    return !foot_contacts.empty() && std::all_of(feet.begin(), feet.end(), is_level) ? EventKind::none : EventKind::changes_foot;
   }
   // A contact damper converts velocity errors to normal force errors, and friction with μ > 1 amplifies them. The required accuracy of
   // velocities therefore limits the resulting acceleration to k_floor_acceleration. Otherwise the contact chatters: errors alone remove and
@@ -97,11 +110,32 @@ private:
   template <class S> void bound_events(const EvaluationData<S>& e, const S* wrench, S* event_value) const {
     steplap::bound_events<S>(mu_static * smooth_normal_force(e), wrench[0], event_value);
   }
-  template <class S> [[nodiscard]] S turn_to_other_foot(const EvaluationData<S>& e, const FrictionState& state) const {
-    if (!has_two_feet) return 1.0;
-    S turn = e.motion[feet[0].a].theta - e.motion[feet[0].b].theta;
-    if (level != 0.0) turn = turn - S(level);
-    return k_foot_dead_band + (state.foot == 0 ? turn : -turn);
+  // The rear-most and the front-most of the feet that are pressed; of all feet if none is.
+  struct PressedFeet {
+    std::uint32_t rear = 0, front = 0;
+  };
+  [[nodiscard]] PressedFeet pressed_feet(const UnitMode* mode) const {
+    const auto count = static_cast<std::uint32_t>(foot_contacts.size());
+    const auto is_pressed = [&](std::uint32_t foot) { return mode[foot_contacts[foot].unit] == k_contact_pressed; };
+    PressedFeet pressed{0, count > 0 ? count - 1 : 0};
+    while (pressed.rear < count && !is_pressed(pressed.rear)) ++pressed.rear;
+    if (pressed.rear >= count) return {0, pressed.front};
+    while (!is_pressed(pressed.front)) --pressed.front;
+    return pressed;
+  }
+  // Returns by how much a is turned from the angle at which both feet touch, rad: the friction is at the rear foot while this is positive.
+  template <class S> [[nodiscard]] S turn_of(const EvaluationData<S>& e, const PressedFeet& pressed) const {
+    const S turn = e.motion[feet[0].a].theta - e.motion[feet[0].b].theta;
+    const double level = levels[pressed.rear * feet.size() + pressed.front];
+    return level != 0.0 ? turn - S(level) : turn;
+  }
+  template <class S>
+  [[nodiscard]] S turn_to_other_foot(const EvaluationData<S>& e, const FrictionState& state, const PressedFeet& pressed) const {
+    if (foot_contacts.empty()) return S(1.0);
+    if (state.foot != pressed.rear && state.foot != pressed.front) return S(-1.0);
+    if (pressed.rear == pressed.front) return S(1.0);
+    const S turn = turn_of(e, pressed);
+    return k_foot_dead_band + (state.foot == pressed.rear ? turn : -turn);
   }
 };
 

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace steplap {
 
@@ -133,7 +134,8 @@ void finish(const CoulombStick& e, std::unique_ptr<CoulombFriction> friction, bo
   friction->mu_kinetic = e.kinetic_friction.value_or(e.static_friction);
   add_channels(builder, *friction);
   if (!is_rolling) {
-    add_slide_channel(builder, "slide", "tangential coordinate of the front-most contact since the reference pose", *friction, 1);
+    add_slide_channel(builder, "slide", "tangential coordinate of the front-most contact since the reference pose", *friction,
+                      friction->feet.size() - 1);
     add_slide_channel(builder, "slide_rear", "the same of the rear-most contact", *friction, 0);
   }
   builder.add_friction(std::move(friction));
@@ -208,11 +210,17 @@ void compile_coulomb(const Element& element, SystemBuilder& builder) {
 
   const int base = builder.add_base();
   const auto slide_of = [&](const ContactGeometry& g) { return evaluate_row<false>(slide_row(g, -1), &builder.reference(0)).value; };
-  const auto [rear, front] = std::minmax_element(
-      geometry.begin(), geometry.end(), [&](const ContactGeometry& x, const ContactGeometry& y) { return slide_of(x) < slide_of(y); });
-  friction->feet = {slide_row(*rear, base), slide_row(*front, base)};
-  friction->has_two_feet = rear != front;
-  if (friction->has_two_feet) friction->level = level_angle(*rear, *front, builder);
+  std::vector<std::size_t> order(geometry.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return slide_of(geometry[x]) < slide_of(geometry[y]); });
+  for (const std::size_t i : order) friction->feet.push_back(slide_row(geometry[i], base));
+  if (order.size() > 1) {
+    for (const std::size_t i : order) friction->foot_contacts.push_back(friction->contacts[i]);
+    friction->levels.assign(order.size() * order.size(), 0.0);
+    for (std::size_t rear = 0; rear < order.size(); ++rear)
+      for (std::size_t front = rear + 1; front < order.size(); ++front)
+        friction->levels[rear * order.size() + front] = level_angle(geometry[order[rear]], geometry[order[front]], builder);
+  }
   friction->mass = lighter_mass(geometry.front(), builder);
   for (const ContactGeometry& g : geometry) friction->lever = std::max({friction->lever, g.gap.point_a.norm(), g.gap.point_b.norm()});
   finish(e, std::move(friction), false, builder);

@@ -238,11 +238,7 @@ void EventHandler::change_phase(EventTransaction& event, int f, FrictionWatch fi
     friction.phase = FrictionPhase::slip;
     friction.sign = 0;
   } else if (fired == FrictionWatch::contact_point) {
-    if (friction.phase == FrictionPhase::slip) modes_.end_slip(state, f);
-    const FrictionState from = friction;
-    unit.friction->switch_contact_point(dynamics_.evaluation(), friction);
-    modes_.set_anchor(state, f);
-    if (unit.friction->dimension() == 1) move_on(event, f, from);
+    change_foot(event, f);
   } else if (friction.phase == FrictionPhase::stick) {
     friction.phase = FrictionPhase::slip;
     friction.has_slipped = friction.is_onset = true;
@@ -256,6 +252,17 @@ void EventHandler::change_phase(EventTransaction& event, int f, FrictionWatch fi
     friction.phase = FrictionPhase::stick; // provisional: the mode problem decides whether the slip reverses instead
     if (unit.friction->dimension() == 1) modes_.note_rest(f, rate[0]);
   }
+}
+
+// Moves element f to its new contact point.
+void EventHandler::change_foot(EventTransaction& event, int f) {
+  FrictionState& friction = event.now.friction[f];
+  const FrictionElement& element = *system_.frictions[f].friction;
+  if (friction.phase == FrictionPhase::slip) modes_.end_slip(event.now, f);
+  const FrictionState from = friction;
+  element.switch_contact_point(dynamics_.evaluation(), friction);
+  modes_.set_anchor(event.now, f);
+  if (element.dimension() == 1) move_on(event, f, from);
 }
 
 // The contact point of element f has moved to another point of its bodies. If the velocity there is not zero, the element slides with it:
@@ -278,7 +285,7 @@ void EventHandler::move_on(EventTransaction& event, int f, const FrictionState& 
   element.aim(friction, &m.rate);
 }
 
-// Updates friction elements whose normal force began or ended because a contact or a signal changed.
+// Updates friction elements whose normal force began or ended, or left their contact point, because a contact or a signal changed.
 void EventHandler::update_loading(EventTransaction& event) {
   if (!event.is_loading_changed) return;
   State& state = event.now;
@@ -295,6 +302,10 @@ void EventHandler::update_loading(EventTransaction& event) {
     } else if (!is_loaded && friction.phase != FrictionPhase::free) {
       if (friction.phase == FrictionPhase::slip) modes_.end_slip(state, f);
       friction.phase = FrictionPhase::free;
+      is_any = true;
+    } else if (const BoundedFriction* const bounded = system_.frictions[f].bounded;
+               is_loaded && bounded && bounded->is_foot_wrong(dynamics_.evaluation(), friction)) {
+      change_foot(event, f);
       is_any = true;
     }
   }

@@ -79,6 +79,7 @@ private:
   void settle(State& state);
   void load(EventTransaction& event, int f);
   void change_phase(EventTransaction& event, int f, FrictionWatch fired);
+  void change_foot(EventTransaction& event, int f);
   void move_on(EventTransaction& event, int f, const FrictionState& from);
   [[nodiscard]] std::vector<int> slots_made_negative_by_jump(const EventTransaction& event, const std::vector<double>& before) const;
   [[noreturn]] void fail_on_pulley(EventTransaction& event, int f) const;

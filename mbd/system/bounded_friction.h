@@ -36,6 +36,9 @@ class BoundedFriction : public FrictionElement {
 public:
   /// Returns K with the static coefficients, or with the kinetic ones if `kinetic`.
   [[nodiscard]] virtual WrenchBounds bounds(const Evaluation& e, const FrictionState& state, bool kinetic) const = 0;
+  /// Returns true if a contact that has opened or closed makes another contact point right: the event function `contact_point` is negative
+  /// then without having crossed zero.
+  [[nodiscard]] virtual bool is_foot_wrong(const Evaluation& /*e*/, const FrictionState& /*state*/) const { return false; }
 
   [[nodiscard]] int dimension() const final { return 1; }
   [[nodiscard]] double support(const Evaluation& e, const FrictionState& state, const double* rate) const override {

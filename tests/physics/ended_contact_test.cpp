@@ -78,6 +78,26 @@ TEST_CASE("a plank on two feet, one of which runs off, tips over the other") {
   CHECK(r.result.statistics.energy_residual < 1e-6 * r.result.statistics.energy_exchanged);
 }
 
+TEST_CASE("friction leaves a foot that has run off: what slides on is braked at the foot that is left") {
+  // The foot in the air turns back while the other one still runs on. Friction at the wrong one would push it along.
+  const auto foot = [](const std::string& name, const std::string& x) {
+    return element("unilateral_contact", name,
+                   "a = { body = \"box\", point = [" + x +
+                       ", -0.3] }; stiffness = 1e8; damping = 1e5; preload = 490.5; ends = [-5.0, 1.0]");
+  };
+  const std::string text = body("box", "mass = 100; inertia = 10; position = [0.0, 0.3]; velocity = [2.0, 0.0]") + foot("rear", "-0.4") +
+                           foot("front", "0.4") +
+                           element("coulomb_stick", "soles", "contacts = [\"rear\", \"front\"]; static_friction = 0.2");
+  const Run r = run(text, {"auto", 1e-8, 0.7, 1e-3});
+  REQUIRE(r.event_times("front", "opens").size() == 1);
+  CHECK(r.event_times("soles") == std::vector<double>{0.0}); // it slides forward from the start, and that is all
+  const std::vector<double> friction = r.series("soles.friction"), rear = r.series("rear.force"), rate = r.series("soles.slip_rate");
+  for (std::size_t i = 0; i < r.times().size(); ++i) {
+    CHECK(rate[i] > 0.0);
+    if (r.times()[i] > r.event_times("front", "opens")[0]) CHECK(friction[i] == doctest::Approx(-0.2 * rear[i]).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("ends in the wrong order are refused") {
   CHECK_THROWS_AS(
       run(body("ball", "mass = 1; inertia = 1") + element("unilateral_contact", "f", "a = \"ball\"; stiffness = 1e5; ends = [1.0, -1.0]"),
