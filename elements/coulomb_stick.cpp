@@ -6,6 +6,7 @@
 #include "elements/share_channel.h"
 #include "elements/unilateral_contact.h"
 #include "mbd/base/portable_math.h"
+#include "mbd/system/measured_channel.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -123,9 +124,9 @@ void add_channels(SystemBuilder& builder, const CoulombFriction& friction) {
 // Adds the channel of the slid distance from the reference pose.
 void add_slide_channel(SystemBuilder& builder, const char* name, const char* doc, const CoulombFriction& friction, std::size_t place) {
   const double start = evaluate_row<false>(friction.feet[place], &builder.reference(0)).value;
-  builder.add_channel(name, "m", {doc, "along b's tangent"}, [&friction, place, start](const Snapshot& s) {
-    return evaluate_row<false>(friction.feet[place], s.motion).value - start;
-  });
+  builder.add_channel(name, "m", {doc, "along b's tangent"}, MotionValue{[row = friction.feet[place], start](const Motion<double>* motion) {
+                        return evaluate_row<false>(row, motion).value - start;
+                      }});
 }
 
 void finish(const CoulombStick& e, std::unique_ptr<CoulombFriction> friction, bool is_rolling, SystemBuilder& builder) {

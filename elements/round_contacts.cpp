@@ -4,6 +4,7 @@
 #include "elements/restitution.h"
 #include "elements/round_measures.h"
 #include "mbd/system/contact_description.h"
+#include "mbd/system/measured_channel.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -21,9 +22,9 @@ LawGroup<Measure, Law>& add(int a, int b, const Measure& measure, const Law& law
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("gap", "m", {"distance that is left", "negative while it presses"},
-                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.offset; });
+                      motion_value(a, b, measure, [offset = law.offset](const auto& m) { return m.value - offset; }));
   builder.add_channel("rate", "m/s", {"of the gap", "positive: it opens"},
-                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
+                      motion_value(a, b, measure, [](const auto& m) { return m.rate; }));
   builder.add_channel("force", "N", {"normal force, zero while open", "positive: it presses"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
   return group;

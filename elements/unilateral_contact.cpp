@@ -6,6 +6,7 @@
 #include "elements/restitution.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/system/contact_description.h"
+#include "mbd/system/measured_channel.h"
 #include "mbd/system/system.h"
 
 namespace steplap {
@@ -21,9 +22,9 @@ LawGroup<Measure, Law>& add(const ContactGeometry& g, const Measure& measure, co
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("gap", "m", {"distance that is left", "negative while it presses"},
-                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.offset; });
+                      motion_value(g.a, g.b, measure, [offset = law.offset](const auto& m) { return m.value - offset; }));
   builder.add_channel("rate", "m/s", {"of the gap", "positive: it opens"},
-                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
+                      motion_value(g.a, g.b, measure, [](const auto& m) { return m.rate; }));
   builder.add_channel("force", "N", {"normal force, zero while open", "positive: it presses"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
   return group;
@@ -54,12 +55,12 @@ template <class Law> EndedContactGroup<Law>& add_ended(const ContactGeometry& g,
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("gap", "m", "δ, negative while closed or off",
-                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.offset; });
-  builder.add_channel("rate", "m/s", "of the gap", [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
+                      motion_value(g.a, g.b, g.gap, [offset = law.offset](const auto& m) { return m.value - offset; }));
+  builder.add_channel("rate", "m/s", "of the gap", motion_value(g.a, g.b, g.gap, [](const auto& m) { return m.rate; }));
   builder.add_channel("force", "N", "normal force, positive in compression",
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
   builder.add_channel("along", "m", "place of the foot along the face, from marker b",
-                      [&group, i](const Snapshot& s) { return group.along_of(i, *s.evaluation); });
+                      motion_value(g.a, g.b, entry.slide(), [](const auto& m) { return m.value; }));
   return group;
 }
 

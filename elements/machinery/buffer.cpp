@@ -3,6 +3,7 @@
 #include "elements/spring_laws.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/system/bounded_friction.h"
+#include "mbd/system/measured_channel.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -167,9 +168,9 @@ void compile_buffer(const Element& element, SystemBuilder& builder) {
 
   const int f = builder.next_friction(), slot = builder.next_friction_row();
   builder.add_channel("depth", "m", {"by which it is pressed in", "negative: the gap that is left"},
-                      [&group, i](const Snapshot& s) { return group.entries[i].law.free - group.measured(i, *s.evaluation).value; });
+                      motion_value(a.body, b.body, measure, [free](const auto& m) { return free - m.value; }));
   builder.add_channel("rate", "m/s", {"of the depth", "positive: it is pressed in"},
-                      [&group, i](const Snapshot& s) { return -group.measured(i, *s.evaluation).rate; });
+                      motion_value(a.body, b.body, measure, [](const auto& m) { return -m.rate; }));
   builder.add_channel("force", "N", {"of spring and friction, zero while open", "positive: it presses"},
                       [&group, i, slot](const Snapshot& s) { return group.force_of(i, *s.evaluation) + s.friction_force[slot]; });
   builder.add_channel("mode", "", {"state", "", "0 open, 1 sticks, 2 moves"},

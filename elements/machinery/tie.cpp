@@ -2,6 +2,7 @@
 
 #include "elements/contact_laws.h"
 #include "elements/space_distance.h"
+#include "mbd/system/measured_channel.h"
 #include "mbd/system/system.h"
 #include "mbd/system/turn_table.h"
 #include "mbd/trust/element_judgement.h"
@@ -205,7 +206,7 @@ template <class Measure> void add(const Tie& e, SystemBuilder& builder, int a, i
   builder.add_unit(group, TieLaw::k_event_count);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("elongation", "m", {"its length less the free one", "positive: stretched"},
-                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.free; });
+                      motion_value(a, b, measure, [free = law.free](const auto& m) { return m.value - free; }));
   builder.add_channel("force", "N", {"force of all of them together", "positive: tension"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
   if (!e.strength) return;

@@ -5,6 +5,7 @@
 #include "mbd/base/dual.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/system/element_failure.h"
+#include "mbd/system/measured_channel.h"
 #include "mbd/system/system.h"
 #include "mbd/system/turn_table.h"
 
@@ -135,17 +136,18 @@ void compile_wound_rope(const Element& element, SystemBuilder& builder) {
   entry.measure.taken = -entry.measure.at<false, double>(at_a, at_b).value;
   const double free = e.slack.value_or(0.0) - e.pretension.value_or(0.0) / e.stiffness;
   entry.law = {e.stiffness, e.damping, -free};
+  const WoundMeasure measure = entry.measure;
   group.entries.push_back(std::move(entry));
   builder.add_unit(group, KelvinVoigtContact::k_event_count);
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel("length", "m", "length of its straight part", [&group, i](const Snapshot& s) {
-    const WoundRopeGroup::ElementData& own = group.entries[i];
-    return own.measure.straight(s.motion[own.a], s.motion[own.b]).length;
-  });
+  builder.add_channel("length", "m", "length of its straight part",
+                      MotionValue{[measure, a = a.body, b = b.body](const Motion<double>* motion) {
+                        return measure.straight(motion[a], motion[b]).length;
+                      }});
   builder.add_channel("stretch", "m", {"by which it is longer than without load", "negative: slack"},
-                      [&group, i, free](const Snapshot& s) { return -WoundRopeGroup::measured(group.entries[i], s.motion).value - free; });
+                      motion_value(a.body, b.body, measure, [free](const auto& m) { return -m.value - free; }));
   builder.add_channel("rate", "m/s", {"of its stretch", "positive: it grows"},
-                      [&group, i](const Snapshot& s) { return -WoundRopeGroup::measured(group.entries[i], s.motion).rate; });
+                      motion_value(a.body, b.body, measure, [](const auto& m) { return -m.rate; }));
   builder.add_channel("tension", "N", {"force along it, zero while it is slack", "positive: it pulls"},
                       [&group, i](const Snapshot& s) { return group.tension(i, *s.evaluation); });
 }

@@ -23,6 +23,19 @@ struct MeasuredValue {
   double operator()(const Snapshot& snapshot) const { return shown(snapshot); }
 };
 
+/// Type of Channel::value for any other channel that depends on the motion of the bodies only. It owns what it reads, so it keeps its value
+/// while the element is inactive.
+struct MotionValue {
+  std::function<double(const Motion<double>*)> of;
+
+  double operator()(const Snapshot& snapshot) const { return of(snapshot.motion); }
+};
+
+/// Returns the channel value get(m), with m value and rate of `measure` of bodies a and b.
+template <class Measure, class Get> [[nodiscard]] MotionValue motion_value(int a, int b, const Measure& measure, const Get& get) {
+  return {[=](const Motion<double>* motion) { return get(measure.template at<false, double>(motion[a], motion[b])); }};
+}
+
 /// Returns the measure behind a channel; null if the channel is not a measure.
 [[nodiscard]] inline const MeasuredValue* measured_by(const Channel& channel) { return channel.value.target<MeasuredValue>(); }
 

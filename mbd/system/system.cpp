@@ -240,10 +240,34 @@ public:
   void mark_bodies(std::vector<char>&) const override {}
 };
 
+// Returns true for what an element does, which is zero while it does not act: forces, pressures and powers, modes, shares of a bound.
+bool is_of_acting(const Channel& channel) {
+  if (!channel.codes.empty() || channel.role != ChannelRole::none) return true;
+  const auto has = [&](const char* part) { return channel.unit.find(part) != std::string::npos; };
+  return has("N") || has("Pa") || has("J") || has("W");
+}
+
+// Sets the value of a channel of an inactive element. What depends on the motion only is kept, and what the element does is zero. Anything
+// else is the element's own, and unknown: zero would meet a criterion on it.
+void end_value(Channel& channel) {
+  channel.bounds = {};
+  if (channel.value.target<MotionValue>()) return;
+  if (const auto* const measured = measured_by(channel)) {
+    MeasuredValue left = *measured;
+    left.shown = [row = left.measure, zero = left.zero, is_rate = left.is_rate](const Snapshot& s) {
+      const MeasureValue<double> m = evaluate_row<false>(row, s.motion);
+      return is_rate ? m.rate : m.value - zero;
+    };
+    channel.value = std::move(left);
+    return;
+  }
+  channel.value = [value = is_of_acting(channel) ? 0.0 : std::numeric_limits<double>::quiet_NaN()](const Snapshot&) { return value; };
+}
+
 } // namespace
 
-// Compiles an inactive element into a temporary system, which is then discarded. Its errors are found in this way, and its channels exist:
-// zero, except those that depend on the motion only. Elements that refer to it as a contact get one that is always open.
+// Compiles an inactive element into a temporary system, which is then discarded. Its errors are found in this way, and its channels exist.
+// Elements that refer to it as a contact get one that is always open.
 void SystemBuilder::compile_inactive(const ElementEntry& entry, RequestedChannels& requested) {
   auto aside = std::make_unique<System>();
   aside->bodies = system_->bodies;
@@ -265,8 +289,8 @@ void SystemBuilder::compile_inactive(const ElementEntry& entry, RequestedChannel
   requested.end_inactive_element(*aside);
   std::swap(system_, aside);
   std::swap(group_types_, types);
-  for (auto channel = system_->channels.begin() + first_channel; channel != system_->channels.end(); ++channel) channel->bounds = {};
-  for (std::size_t i = first_operand; i < system_->operands.size(); ++i) system_->operands[i]->bounds = {};
+  for (auto channel = system_->channels.begin() + first_channel; channel != system_->channels.end(); ++channel) end_value(*channel);
+  for (std::size_t i = first_operand; i < system_->operands.size(); ++i) end_value(*system_->operands[i]);
   if (!is_contact) return;
   auto& contacts = group<InactiveContacts>();
   contacts.entries.push_back({});
@@ -475,22 +499,6 @@ int SystemBuilder::add_friction(std::unique_ptr<FrictionElement> friction) {
   return static_cast<int>(system_->frictions.size()) - 1;
 }
 
-namespace {
-
-// Returns the function for a channel of an inactive element: unchanged if it is a measure of the motion, otherwise zero.
-std::function<double(const Snapshot&)> value_while_inactive(const std::function<double(const Snapshot&)>& value) {
-  const auto* const measured = value.target<MeasuredValue>();
-  if (!measured) return [](const Snapshot&) { return 0.0; };
-  MeasuredValue left = *measured;
-  left.shown = [row = left.measure, zero = left.zero, is_rate = left.is_rate](const Snapshot& s) {
-    const MeasureValue<double> m = evaluate_row<false>(row, s.motion);
-    return is_rate ? m.rate : m.value - zero;
-  };
-  return left;
-}
-
-} // namespace
-
 bool SystemBuilder::is_channel_requested(std::string_view owner, std::string_view name) const {
   if (!wanted_) return true;
   return std::any_of(wanted_->begin(), wanted_->end(), [&](std::string_view w) {
@@ -517,7 +525,7 @@ Channel& SystemBuilder::enter_channel(Use use, std::string_view owner, std::stri
   std::string whole(owner);
   if (!whole.empty()) whole.append(1, '.');
   whole.append(name);
-  Channel channel = acting().make_channel(std::move(whole), unit, text, acting_ ? value_while_inactive(value) : std::move(value));
+  Channel channel = acting().make_channel(std::move(whole), unit, text, std::move(value));
   if (use == Use::channel) return acting().channels.emplace_back(std::move(channel));
   return *acting().operands.emplace_back(std::make_unique<Channel>(std::move(channel)));
 }

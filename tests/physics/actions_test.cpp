@@ -121,6 +121,36 @@ TEST_CASE("channels of what is released are zero from there on, and their extrem
   }
 }
 
+// A block slides on two feet, in line with its centre of gravity; its friction is released, then the feet, and it falls freely.
+TEST_CASE("where a released element's bodies are is told on, and what only the element knows has no value") {
+  const auto foot = [](const std::string& name, const std::string& x) {
+    return element("unilateral_contact", name, "a = { body = \"block\", point = [" + x + ", 0.0] }; stiffness = 1e5; preload = 4.905");
+  };
+  const std::string text =
+      body("block", "mass = 1; inertia = 0.1; velocity = [1.0, 0.0]") + foot("rear", "-0.5") + foot("front", "0.5") +
+      element("coulomb_stick", "soles", "contacts = [\"rear\", \"front\"]; static_friction = 0.1") +
+      element("tie", "cord",
+              "a = \"block\"; b = { body = \"ground\", at = [0.0, 1.0] }; stiffness = 1; acts = \"compression\"; slack = 9") +
+      action("wet", "when = \"0.5 s\"; do = [\"release soles\", \"release cord\"]") +
+      action("hole", "when = \"0.8 s\"; do = [\"release rear\", \"release front\"]");
+  SimulationOptions o = options({"dop853", 1e-12, 1.0});
+  o.has_extremes = true;
+  Run r;
+  r.system = compile(scene(text + "\n[simulation]\nstep = 1e-3\n"));
+  r.result = simulate(*r.system, r.system->initial_state(), o);
+  const double v = 1.0 - 0.1 * k_g * 0.5, x = 0.5 * (1.0 + v) * 0.5 + 0.5 * v, y = -0.5 * k_g * 0.04;
+  CHECK(std::abs(r.last("soles.slide") - x) < k_tolerance);
+  CHECK(std::abs(r.last("rear.gap") - (y - 4.905e-5)) < k_tolerance);
+  CHECK(std::abs(r.last("front.rate") + k_g * 0.2) < k_tolerance);
+  CHECK(std::abs(r.last("cord.elongation") - (std::hypot(x, 1.0 - y) - 1.0)) < k_tolerance);
+  CHECK(std::isnan(r.last("soles.slip_rate"))); // where it would act is the element's own choice
+  for (const char* name : {"soles.friction", "soles.normal", "soles.mode", "rear.force", "cord.force"}) CHECK(r.last(name) == 0.0);
+  for (const ChannelRange& range : r.result.ranges) {
+    CAPTURE(range.channel->name);
+    CHECK(range.had_no_value == (range.channel->name == "soles.slip_rate"));
+  }
+}
+
 TEST_CASE("a clutch that closes at once makes two discs one, and loses what the closed form says") {
   const double together = (k_i1 * k_w1 + k_i2 * k_w2) / (k_i1 + k_i2),
                lost = 0.5 * k_i1 * k_i2 / (k_i1 + k_i2) * (k_w1 - k_w2) * (k_w1 - k_w2);
