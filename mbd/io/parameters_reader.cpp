@@ -185,10 +185,10 @@ void ParametersReader::read_value(const Node& node, Parameter& parameter, double
   value = quantity.value;
   parameter.powers = *powers;
   if (*powers != std::array<double, 3>{0.0, 0.0, -1.0}) return;
-  if (contains(parameter.text, "Hz") || contains(parameter.text, "hertz")) turns_.back() = AngleUnit::turns;
-  else if (contains(parameter.text, "rad") || contains(parameter.text, "rpm") || contains(parameter.text, "rev") ||
-           contains(parameter.text, "deg"))
+  if (contains(parameter.text, "rad") || contains(parameter.text, "rpm") || contains(parameter.text, "rev") ||
+      contains(parameter.text, "deg"))
     turns_.back() = AngleUnit::radians;
+  else if (!parse_quantity(parameter.text, "rad/s").problem.empty()) turns_.back() = AngleUnit::turns; // "Hz" and "1/min"
 }
 
 // Reads a range. Its ends must have the unit of the parameter's value, which check_ranges() checks later.

@@ -2,6 +2,7 @@
 
 #include "mbd/base/diagnostics.h"
 #include "mbd/formula/unit_dimension.h"
+#include "mbd/io/unit_text.h"
 
 #include <udunits2.h>
 
@@ -100,9 +101,7 @@ public:
   }
 
   UnitPtr parse(const std::string& text) const {
-    const bool starts_with_number = text.find_first_of("0123456789+-.") == 0;
-    if (starts_with_number && text.rfind("1/", 0) != 0) return nullptr;
-    if (text.find('@') != std::string::npos) return nullptr;
+    if (!unit_text_problem(text).empty()) return nullptr;
     return UnitPtr(ut_parse(system_.get(), text.c_str(), UT_UTF8));
   }
 
@@ -124,6 +123,10 @@ private:
 
 bool names_hertz(const std::string& unit) { return unit.find("Hz") != std::string::npos || unit.find("hertz") != std::string::npos; }
 
+// "1/min" as an angular velocity may count turns as "Hz" does; "1/s" is accepted, because formulas give angular velocities in it.
+bool is_rate(const BaseForm& form) { return form.powers.size() == 1 && form.powers.contains("second"); }
+bool is_one(const cv_converter& converter) { return cv_convert_double(&converter, 1.0) == 1.0; }
+
 Conversion failed(std::string problem) { return {nullptr, 1.0, std::move(problem)}; }
 
 Conversion UnitSystem::make_conversion(const std::string& given, const std::string& wanted) const {
@@ -141,11 +144,12 @@ Conversion UnitSystem::make_conversion(const std::string& given, const std::stri
   if (form.powers != target.powers)
     return failed(wanted.empty() ? "has the unit '" + given + "', but the value has no dimension"
                                  : "has the unit '" + given + "', but a unit like '" + wanted + "' is needed");
-  if (target.radian_power != 0 && form.radian_power == 0 && names_hertz(given))
+  ConverterPtr converter(ut_get_converter(from.get(), to.get()));
+  if (target.radian_power != 0 && form.radian_power == 0 && (names_hertz(given) || (is_rate(target) && !is_one(*converter))))
     return failed("is a frequency, but an angular velocity is needed: write 'rad/s', or 'rpm' for "
                   "turns per minute");
   const bool turns = wanted == "Hz" && form.radian_power == 1;
-  return {ConverterPtr(ut_get_converter(from.get(), to.get())), turns ? 0.5 / std::numbers::pi : 1.0, ""};
+  return {std::move(converter), turns ? 0.5 / std::numbers::pi : 1.0, ""};
 }
 
 // Returns a message about an unknown unit, with a suggestion if a product was probably meant: "N m" for "Nm".
@@ -258,6 +262,7 @@ std::optional<std::array<double, 3>> powers_in(const std::string& original) {
   if (status != std::errc()) return std::nullopt;
   const std::string given = trimmed(std::string(rest, end));
   if (given.empty()) return std::array<double, 3>{};
+  if (!unit_text_problem(given).empty()) return std::nullopt;
   const std::lock_guard lock(unit_system_mutex());
   if (const auto powers = unit_system().powers(given)) return powers;
   const std::optional<UnitDimension> counted = dimension_of(given); // amperes and kelvins count as numbers
@@ -286,6 +291,7 @@ Quantity parse_quantity(const std::string& original, const std::string& unit, Un
     const double value = usual->factor * number;
     return std::isfinite(value) ? Quantity{value, ""} : Quantity{0.0, "'" + text + "' is not finite"};
   }
+  if (const std::string problem = unit_text_problem(given); !problem.empty()) return {0.0, "'" + text + "' " + problem};
   const std::lock_guard lock(unit_system_mutex());
   const Conversion& conversion = unit_system().conversion(given, unit);
   if (!conversion.problem.empty()) return {0.0, "'" + text + "' " + conversion.problem};

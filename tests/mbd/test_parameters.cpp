@@ -204,6 +204,8 @@ TEST_CASE("what makes no sense is refused with place and remedy") {
       {"\"30 mm\"]", "\"30 ms\"]", "is a value in s, the parameter a value in m"},
       {"\"4 mm\", \"30 mm\"", "\"30 mm\", \"4 mm\"", "begins above its end"},
       {"natural = \"2 Hz\"", "natural = \"2 rad/s\"", "counts radians a second, but the field turns, 'Hz'"},
+      {"turns = 3", "turns = 3\nspin = \"60 1/min\"\n[[body]]\nname = \"b\"\nmass = 1\ninertia = 1\nangular_velocity = \"= spin\"",
+       "'spin' counts turns a second, but the field radians"},
       {"meaning =", "meanin =", "unknown key 'meanin' in parameter 'wall' (did you mean 'meaning'?)"},
   };
   for (const Case& c : cases) {
