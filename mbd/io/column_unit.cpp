@@ -51,4 +51,17 @@ UnitConversion conversion_of(const CsvTable& table, std::size_t column, const Co
   return {factor.value - zero.value, zero.value};
 }
 
+std::string unit_in_file(const std::string& path, const std::string& column) {
+  const CsvTable table = read_csv_header(path);
+  if (table.units.empty()) return "";
+  std::size_t place = 0;
+  try {
+    place = table.column(column, {});
+  } catch (const ModelError&) {
+    return "";
+  }
+  const std::string unit = unit_in_header(table.units[place], "*");
+  return unit.empty() || !one(unit, "*").problem.empty() ? "" : unit;
+}
+
 } // namespace steplap

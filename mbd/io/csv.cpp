@@ -9,6 +9,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <optional>
 #include <sstream>
 
@@ -118,7 +120,7 @@ public:
   explicit CsvReader(const std::string& file) { table_.file = file; }
 
   CsvTable read(std::string_view text) {
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3); // byte order mark
+    if (text.starts_with(k_byte_order_mark)) text.remove_prefix(k_byte_order_mark.size());
     while (!text.empty()) {
       const auto end = text.find('\n');
       ++line_;
@@ -129,11 +131,30 @@ public:
     return std::move(table_);
   }
 
+  CsvTable read_first_row(std::istream& lines) {
+    for (std::string line; table_.columns.empty() && std::getline(lines, line);) {
+      std::string_view text = line;
+      if (++line_ == 1 && text.starts_with(k_byte_order_mark)) text.remove_prefix(k_byte_order_mark.size());
+      if (is_skipped(text)) continue;
+      begin_line(text);
+      read_header();
+    }
+    return std::move(table_);
+  }
+
 private:
-  void read_line(std::string_view line) {
-    if (trimmed(line).empty() || trimmed(line).front() == '#') return;
+  static constexpr std::string_view k_byte_order_mark = "\xEF\xBB\xBF";
+
+  static bool is_skipped(std::string_view line) { return trimmed(line).empty() || trimmed(line).front() == '#'; }
+
+  void begin_line(std::string_view line) {
     if (delimiter_ == 0) delimiter_ = delimiter_of(line);
     split(line, delimiter_, fields_);
+  }
+
+  void read_line(std::string_view line) {
+    if (is_skipped(line)) return;
+    begin_line(line);
     if (table_.columns.empty() && read_header()) return;
     if (fields_.size() != table_.columns.size())
       fail("expected " + counted(table_.columns.size(), "column", "columns") + ", got " + std::to_string(fields_.size()));
@@ -218,6 +239,17 @@ CsvTable parse_csv(const std::string& text, const std::string& file_name) { retu
 
 CsvTable read_csv(const std::string& path, const Location& where, const std::string& wanted) {
   return parse_csv(read_named_file(path, where, "the record ", wanted), path);
+}
+
+CsvTable read_csv_header(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return {};
+  std::ifstream lines(path, std::ios::binary);
+  try {
+    return CsvReader(path).read_first_row(lines);
+  } catch (const ModelError&) { // of the first row
+    return {};
+  }
 }
 
 std::string csv_field(const std::string& text) {

@@ -32,6 +32,10 @@ struct CsvTable {
 [[nodiscard]] CsvTable read_csv(const std::string& path, const Location& where, const std::string& wanted = "");
 [[nodiscard]] CsvTable parse_csv(const std::string& text, const std::string& file_name);
 
+/// Returns the names and units of the columns of a file, whose rows are not read. There are no columns if the file cannot be read twice, as
+/// a pipe, or if its first row is neither names nor numbers: read_csv() reports the errors.
+[[nodiscard]] CsvTable read_csv_header(const std::string& path);
+
 /// CSV text with comma delimiter and "\n" after each row. Numbers have the fewest digits that read back exactly.
 class CsvText {
 public:

@@ -366,14 +366,11 @@ void Reader::read_tables() {
 // Checks that the signals of elements have fitting units: "0.5 gravity" is not a force, "20 deg" not a displacement.
 void Reader::check_signal_units() {
   SignalUnits units(*parameters_);
-  for (std::size_t i = 0; i < model_.signals.size(); ++i)
-    units.enter(model_.signals[i].definition->name, model_.signals[i].kind->name, given(Section::signal)[i]);
+  for (std::size_t i = 0; i < model_.signals.size(); ++i) units.enter(model_.signals[i], given(Section::signal)[i]);
   const auto check = [&](const std::vector<GivenField>& fields, const FieldTable& table, const void* object, const std::string& subject) {
     for (const GivenField& field : fields) {
       if (!field.node || !field.is_usable || field.field->type != FieldType::signal) continue;
-      const std::string unit = unit_in(table, *field.field, object);
-      if (unit.empty()) continue;
-      const std::string misfit = units.misfit(field.node->text(), unit);
+      const std::string misfit = units.misfit(field.node->text(), unit_in(table, *field.field, object)); // without a unit it is a factor
       if (!misfit.empty()) add(field.node->where(), "'" + field.field->name + "' of " + subject + ": " + misfit);
     }
   };

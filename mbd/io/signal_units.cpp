@@ -1,5 +1,6 @@
 #include "mbd/io/signal_units.h"
 
+#include "mbd/io/column_unit.h"
 #include "mbd/io/parameters_reader.h"
 #include "mbd/io/units.h"
 
@@ -27,6 +28,16 @@ std::string own_unit(const std::string& kind, const std::vector<GivenField>& giv
   return "";
 }
 
+std::string text_of(const SignalEntry& entry, const char* field) {
+  return std::get<std::string>(entry.kind->fields.find(field)->get(entry.definition.get()));
+}
+
+// Returns the unit that the file of a record states; "" for other signals, and if the model gives the unit.
+std::string unit_of_file(const SignalEntry& entry) {
+  if (entry.kind->name != "record" || !text_of(entry, "unit").empty()) return "";
+  return unit_in_file(text_of(entry, "file"), text_of(entry, "column"));
+}
+
 bool is_factor(const GivenField& given) { return given.field->name == "factor" || given.field->name == "factors"; }
 
 } // namespace
@@ -40,23 +51,26 @@ std::string SignalUnits::problem_of(const Node& node, const std::string& unit) c
   return problem;
 }
 
-void SignalUnits::enter(const std::string& signal, const std::string& kind, const std::vector<GivenField>& given) {
-  signals_[signal] = {kind, &given};
+void SignalUnits::enter(const SignalEntry& entry, const std::vector<GivenField>& given) {
+  signals_[entry.definition->name] = {&entry, &given};
 }
 
 std::string SignalUnits::misfit(const std::string& signal, const std::string& unit) const { return misfit(signal, unit, 0); }
 
 std::string SignalUnits::misfit(const std::string& signal, const std::string& unit, int depth) const {
   const auto found = signals_.find(signal);
-  if (found == signals_.end() || found->second.kind == "product" || depth > k_deepest) return "";
+  if (found == signals_.end() || found->second.entry->kind->name == "product" || depth > k_deepest) return "";
   bool is_of_its_parts = true;
   for (const GivenField& given : *found->second.given) {
     if (!given.node || !given.is_usable) return "";
     is_of_its_parts = is_of_its_parts && !is_factor(given);
   }
-  if (const std::string own = own_unit(found->second.kind, *found->second.given); !own.empty()) {
+  const std::string in_file = unit_of_file(*found->second.entry);
+  const std::string own = in_file.empty() ? own_unit(found->second.entry->kind->name, *found->second.given) : in_file;
+  if (!own.empty()) {
     const Quantity one = parse_quantity("1 " + own, unit);
-    return one.problem.empty() ? "" : "its signal '" + signal + "' is in " + own + ": " + one.problem;
+    if (one.problem.empty()) return "";
+    return "its signal '" + signal + "' is in " + own + (in_file.empty() ? "" : " by the header of its file") + ": " + one.problem;
   }
   for (const GivenField& given : *found->second.given) {
     const Field& field = *given.field;

@@ -131,6 +131,31 @@ TEST_CASE("a signal whose values have a unit is taken for nothing else") {
   }
 }
 
+TEST_CASE("the unit in the header of a record is that of its signal") {
+  const auto answer_to = [](const std::string& column, const std::string& kind, const std::string& fields, const std::string& more = "") {
+    const Written table("time [ms];a [g];v [km/h];f [kN];plain;p [bar]\n0;0;0;0;0;0\n100;0,1;5;2;1;3\n");
+    return checked(door_and_drawer(signal_entry("record", "r", "file = '" + table.file.string() + "'; column = '" + column + "'" + more) +
+                                   signal_entry("scaled", "delayed", "signal = 'r'; delay = 0.01") + element(kind, "e", fields)));
+  };
+  const std::string drive = "a = 'drawer'; signal = 'delayed'; as = ";
+  const Answer answer = answer_to("v", "prescribed_motion", drive + "'acceleration'");
+  CAPTURE(answer.err);
+  CHECK(answer.code == 3);
+  CHECK(has(answer.err, "its signal 'r' is in km/h by the header of its file: '1 km/h' has the unit 'km/h', but a unit like 'm/s^2'"));
+  CHECK(has(answer_to("3", "prescribed_motion", drive + "'acceleration'").err, "is in km/h by the header"));
+  CHECK(has(answer_to("a", "prescribed_motion", drive + "'velocity'").err, "is in gravity by the header"));
+  CHECK(has(answer_to("f", "motor", "a = 'door'; effort = 'r'").err, "is in kN by the header"));
+  CHECK(answer_to("v", "prescribed_motion", drive + "'velocity'").code == 0);
+  CHECK(answer_to("a", "prescribed_motion", drive + "'acceleration'").code == 0);
+  CHECK(answer_to("f", "load", "at = 'door'; force_x = 'r'").code == 0);
+  CHECK(answer_to("plain", "load", "at = 'door'; force_x = 'r'").code == 0);
+
+  const std::string brake = "a = 'door'; holds = 10.0; signal = 'r'"; // a factor
+  CHECK(has(answer_to("p", "joint_friction", brake).err, "is in bar by the header of its file: '1 bar' has the unit 'bar'"));
+  CHECK(has(answer_to("plain", "joint_friction", brake, "; unit = 'bar'").err, "has the unit 'bar', but the value has no dimension"));
+  CHECK(answer_to("plain", "joint_friction", brake).code == 0);
+}
+
 // What bears friction twice would bear twice as much; friction of lines at different heights has no common lever.
 TEST_CASE("contacts that cannot share one friction are refused, or told") {
   const auto foot = [](const std::string& name, const std::string& at, const std::string& more = "") {
