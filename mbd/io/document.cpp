@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -244,7 +245,7 @@ private:
     root.erase("format");
   }
 
-  // So is `outline_unit`: plain numbers of its outlines are in that unit.
+  // So is `outline_unit`: plain numbers of its outlines and shapes are in that unit.
   void take_outline_unit(Node& root) {
     const Node* const unit = root.find("outline_unit");
     if (!unit) return;
@@ -255,11 +256,16 @@ private:
     root.erase("outline_unit");
   }
 
-  static void scale_outlines(Node& table, double factor) {
+  // In a shape all lengths are scaled, so that a plate and its holes, or a disc, have one unit.
+  static void scale_outlines(Node& table, double factor, bool is_shape = false) {
+    const auto is_one_of = [](const std::string& key, std::initializer_list<const char*> keys) {
+      return std::find(keys.begin(), keys.end(), key) != keys.end();
+    };
     for (Node& child : table.children) {
-      const bool is_outline = child.key == "outline" || child.key == "outline_a" || child.key == "outline_b" || child.key == "holes" ||
-                              child.key == "hole_centres";
-      is_outline ? scale_numbers(child, factor) : scale_outlines(child, factor);
+      const bool is_length =
+          is_one_of(child.key, {"outline", "outline_a", "outline_b"}) ||
+          (is_shape && is_one_of(child.key, {"holes", "hole_centres", "hole_diameters", "centre", "diameter", "thickness"}));
+      is_length ? scale_numbers(child, factor) : scale_outlines(child, factor, is_shape || child.key == "shape");
     }
   }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <string>
 
 using namespace steplap;
@@ -132,4 +133,28 @@ TEST_CASE("a file may give its outlines in millimetres, and only plain numbers a
   for (const char* unit : {"\"kg\"", "\"\"", "3", "\"of mine\""})
     CHECK(has(refusal([&] { return read("outline_unit = " + std::string(unit) + "\n"); }),
               "m.toml:1:16: error: 'outline_unit' must be a unit of length"));
+}
+
+// A plate with a round hole and a square one, and a disc with a hole, once in millimetres and once in metres.
+TEST_CASE("all plain lengths of a shape are in the unit of the outlines") {
+  const auto read = [](const std::string& head, const std::string& plate, const std::string& disc) {
+    return parse_model(head + "[[body]]\nname = \"a\"\n[[shape]]\nname = \"plate\"\nbody = \"a\"\ndensity = 3.0\n" + plate +
+                           "[[shape]]\nname = \"disc\"\nbody = \"a\"\narea_density = 2.0\n" + disc,
+                       "m.toml", transformer_catalog())
+        .bodies.front();
+  };
+  const Body small = read("outline_unit = \"mm\"\n",
+                          "outline = [[0, 0], [2000, 0], [2000, 1000], [0, 1000]]\nholes = [[[1500, 500], [1600, 500], [1600, 600], [1500, "
+                          "600]]]\nhole_centres = [[500, 500]]\nhole_diameters = [400]\nthickness = 10\n",
+                          "centre = [3000, 0]\ndiameter = 600\nhole_centres = [[3000, 0]]\nhole_diameters = [\"0.2 m\"]\n"),
+             large = read("",
+                          "outline = [[0, 0], [2, 0], [2, 1], [0, 1]]\nholes = [[[1.5, 0.5], [1.6, 0.5], [1.6, 0.6], [1.5, "
+                          "0.6]]]\nhole_centres = [[0.5, 0.5]]\nhole_diameters = [0.4]\nthickness = 0.01\n",
+                          "centre = [3, 0]\ndiameter = 0.6\nhole_centres = [[3, 0]]\nhole_diameters = [0.2]\n");
+  constexpr double k_rounding = 1e-13; // of lengths times 0.001, in areas and second moments
+  const double pi = std::numbers::pi;
+  CHECK(small.mass == doctest::Approx(0.03 * (2.0 - 0.01 - pi * 0.04) + 2.0 * pi * (0.09 - 0.01)).epsilon(k_rounding));
+  CHECK(small.mass == doctest::Approx(large.mass).epsilon(k_rounding));
+  CHECK(small.inertia == doctest::Approx(large.inertia).epsilon(k_rounding));
+  CHECK((small.cg - large.cg).norm() < k_rounding * 3.0);
 }
