@@ -95,6 +95,12 @@ public:
     return std::move(left_out_);
   }
 
+  // Checks the channels that are written. Throws all problems found.
+  void run_written() {
+    for (const std::string& pattern : model_.output.channels) found(model_.output.where, "'channels' of [output]", pattern);
+    if (!problems_.empty()) throw ModelError(std::move(problems_));
+  }
+
   // Checks criteria only. Throws all problems found.
   void run_criteria() {
     for (Criterion& criterion : model_.criteria) check_criterion_on(criterion);
@@ -308,6 +314,10 @@ std::vector<const AcceptanceTable*> acceptance_tables_of(const Model& model) {
 }
 
 std::vector<std::string> check_presentation(Model& model, const System& system) { return PresentationCheck(model, system).run(); }
+
+void check_written_channels(Model& model, const System& system) {
+  if (!model.output.channels.empty()) PresentationCheck(model, system).run_written();
+}
 
 void convert_limits(Model& model, const System& system) { PresentationCheck(model, system).run_criteria(); }
 

@@ -22,6 +22,9 @@ struct AcceptanceTable : Criterion {
 /// of another dimension, patterns that match nothing, actions that wait for an event which their element cannot have, and plots or criteria
 /// that combine different units. Removes plots of channels that are not written from the model, and returns the names of the removed plots.
 std::vector<std::string> check_presentation(Model& model, const System& system);
+/// Throws ModelError for a pattern in `channels` of [output] that matches no channel. This is for models as they are given; programs ask
+/// for channels that a variant of a model may lack.
+void check_written_channels(Model& model, const System& system);
 /// Checks criteria only, and converts their limits to the units of their channels. Other channels may be missing in the system.
 void convert_limits(Model& model, const System& system);
 

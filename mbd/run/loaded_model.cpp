@@ -49,9 +49,15 @@ void refuse_endless_output(const Model& model, const System& system) {
 
 } // namespace
 
+double trajectory_rows(const Model& model) {
+  constexpr double k_slack = 1e-9; // of an interval, within which a run takes two samples as one
+  const double intervals = model.simulation.end / model.output.step, whole = std::floor(intervals + k_slack);
+  return whole + (intervals - whole > k_slack ? 2.0 : 1.0);
+}
+
 double trajectory_numbers(const Model& model, const System& system) {
   const Trajectory trajectory(system, model.output.channels);
-  return (std::floor(model.simulation.end / model.output.step) + 1.0) * (1.0 + static_cast<double>(trajectory.channels().size()));
+  return trajectory_rows(model) * (1.0 + static_cast<double>(trajectory.channels().size()));
 }
 
 namespace {
@@ -83,6 +89,7 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std
   if (loaded->text.size() > k_large_text) ::malloc_trim(0); // the trees of a file take ten times its size, in pieces that nothing else fits
   loaded->system = compiled(loaded->model);
   loaded->inputs = read.files();
+  check_written_channels(loaded->model, *loaded->system);
   put_together(*loaded);
   return loaded;
 }
@@ -99,6 +106,7 @@ std::shared_ptr<const LoadedModel> load_model_text(const std::string& text, cons
   loaded->model = parse_model_text(text, path, catalogue, overrides, loaded->text);
   loaded->system = compiled(loaded->model);
   loaded->inputs = read.files();
+  check_written_channels(loaded->model, *loaded->system);
   put_together(*loaded);
   return loaded;
 }

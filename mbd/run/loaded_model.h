@@ -27,6 +27,9 @@ struct LoadedModel {
   State assembled; ///< initial state after projection of the given poses and velocities onto the constraints
 };
 
+/// Returns how many rows the trajectory of a run to its end has: one at each multiple of the output step, and one at the end.
+[[nodiscard]] double trajectory_rows(const Model& model);
+
 /// Returns how many numbers the trajectory of a run contains, including times.
 [[nodiscard]] double trajectory_numbers(const Model& model, const System& system);
 

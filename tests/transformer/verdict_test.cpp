@@ -244,6 +244,24 @@ TEST_CASE("a limb that falls out is rejected as soon as a corner has parted") {
   CHECK(find(judgement, "front joint", "the step-lap joint holds")->outcome == Verdict::inspect); // not wholly apart
 }
 
+TEST_CASE("every pattern of the channels that are written matches one") {
+  Model model = parse_model(k_throw, "a.toml", transformer_catalog());
+  const std::unique_ptr<System> system = compile(model);
+  const auto message = [&](const std::string& pattern) -> std::string {
+    model.output.channels = {"ball.x", pattern};
+    try {
+      check_written_channels(model, *system);
+    } catch (const ModelError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(message("ball.v*") == "");
+  CHECK(message("nothing.*") == "a.toml:6:1: error: 'channels' of [output]: no channel matches 'nothing.*'");
+  CHECK(message("bal.y").find("no channel matches 'bal.y' (did you mean 'ball.y'?)") != std::string::npos);
+  CHECK(message("whole.bal*").find("'whole.balance' is computed on request only") != std::string::npos);
+}
+
 TEST_CASE("criteria and plots that make no sense are errors of the model") {
   const auto message = [](const std::string& tables) -> std::string {
     try {

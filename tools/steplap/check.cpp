@@ -257,7 +257,7 @@ void print_model(std::ostream& out, const LoadedModel& loaded) {
   table.add_row({"run", run_text(model)});
   const Trajectory channels(*loaded.system, model.output.channels);
   table.add_row({"output", counted(channels.channels().size(), "channel", "channels") + " every " + number_text(model.output.step) +
-                               " s, " + number_text(std::floor(model.simulation.end / model.output.step) + 1.0) + " rows"});
+                               " s, " + number_text(trajectory_rows(model)) + " rows"});
   out << table;
   print_parameters(out, model.parameters);
   print_assembly(out, loaded);

@@ -582,6 +582,7 @@ std::shared_ptr<StudyModel> read_study_model(const std::string& path, const std:
   model->text = effective_model_text(path, program_catalogue(), overrides);
   Model whole = completed(model->given);
   model->system = compile(whole);
+  check_written_channels(whole, *model->system);
   (void)check_presentation(whole, *model->system);
   model->files = inputs.files();
   return model;

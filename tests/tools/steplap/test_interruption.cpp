@@ -132,6 +132,15 @@ TEST_CASE("a trajectory beyond the limit is refused before the run, and its size
   }
   CHECK(steplap_does({"check", model, "--set", "output.step=1e-12", "--set", "output.most_numbers=1e14"}).code == 0);
   CHECK(has(steplap_does({"check", model}).out, "every 0.01 s, 11 rows"));
+
+  // A row at each multiple of the step and one at the end of 0.1 s, as simulate writes them.
+  for (const auto& [step, rows] : {std::pair("0.03", 5), std::pair("0.05", 3), std::pair("0.1", 2), std::pair("0.06", 3)}) {
+    CAPTURE(step);
+    const std::string set = "output.step=" + std::string(step);
+    CHECK(has(steplap_does({"check", model, "--set", set}).out, "every " + std::string(step) + " s, " + std::to_string(rows) + " rows"));
+    const auto loaded = load_model(model, {set});
+    CHECK(run_model(loaded).result.trajectory->size() == static_cast<std::size_t>(rows));
+  }
 }
 
 // The parser bounds brackets by 256; a key of many parts makes as many tables within each other.
