@@ -210,6 +210,10 @@ void ParametersReader::read_range(const Node& range, Parameter& parameter) {
     if (problems_.size() != before) return;
     if (is_formula(end)) return complain(end, "its ends are numbers, not formulas");
     const bool is_given_as_formula = parameter.text.starts_with('=');
+    const bool is_overridden = parameter.where.line == 0 && end.where().line != 0; // then the value is wrong, not the range of the file
+    if (!is_given_as_formula && read.powers != parameter.powers && is_overridden)
+      return add(parameter.where, "parameter '" + parameter.name + "' is " + said(parameter.powers) + ", its range '" + read.text + "' " +
+                                      said(read.powers));
     if (!is_given_as_formula && read.powers != parameter.powers)
       return complain(end, "'" + read.text + "' is " + said(read.powers) + ", the parameter " + said(parameter.powers));
     *ends[i] = value;

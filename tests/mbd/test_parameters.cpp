@@ -217,6 +217,8 @@ TEST_CASE("what makes no sense is refused with place and remedy") {
   }
   CHECK(has(refusal(k_scene, {"parameters.wal=1 mm"}), "the model has no parameter 'wal' (did you mean 'wall'?)"));
   CHECK(has(refusal(k_scene, {"parameters.wall=50 mm"}), "above its range"));
+  CHECK(has(refusal(k_scene, {"parameters.wall=14"}),
+            "override parameters.wall=14: error: parameter 'wall' is a number without a unit, its range '4 mm' a value in m"));
   CHECK(refusal(k_scene, {"parameters.wall=14 mm", "parameters.width=0.4 m"}).empty());
 }
 
