@@ -201,7 +201,8 @@ std::string json_schema(const Catalogue& catalogue) {
   Json root{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "steplap model"}};
   Json properties = Json::object(), definitions = Json::object();
   properties["format"] = {{"const", k_file_format}, {"description", "version of the format of this file"}};
-  properties["outline_unit"] = {{"type", "string"}, {"description", "unit of plain numbers of the outlines and lengths of shapes in this file, as in \"mm\""}};
+  properties["outline_unit"] = {{"type", "string"},
+                                {"description", "unit of plain numbers of the outlines and lengths of shapes in this file, as in \"mm\""}};
   properties["extends"] = {{"type", "string"}, {"description", "model file that this one is laid over"}};
   properties["parameters"] = parameters_schema();
   for (const Described& kind : describe(catalogue)) {

@@ -43,6 +43,8 @@ std::string heading(const Described& kind) {
 
 ReferenceRows rows_of(const Described& kind) {
   ReferenceRows rows{{"field", "type", "unit", "default", "range", "meaning"}};
+  const bool has_name = kind.role == "signal" || kind.role == "element" || kind.role == "table";
+  if (has_name && !kind.fields->find("name")) rows.push_back({"name", "text", "", "required", "", "unique name"});
   for (const Field& f : kind.fields->fields())
     rows.push_back({f.name, type_text(f), unit_text(f), default_text(kind, f), range_text(f), f.doc});
   return rows;
@@ -132,8 +134,8 @@ std::string example_model(const Catalogue& catalogue, const std::string& name) {
 
 std::string reference_markdown(const Catalogue& catalogue) {
   std::string text = "# Model reference\n\nGenerated from the field tables. Numbers are SI; a string "
-                     "may carry a unit, as in \"47 t\". Signals, elements, channels, plots, criteria and cores have a unique `name` "
-                     "besides.\n\nBelow the fields of a kind stand the channels of its elements (docs/reference/channels.md): what a run "
+                     "may carry a unit, as in \"47 t\".\n\nBelow the fields of a kind stand the channels of its elements "
+                     "(docs/reference/channels.md): what a run "
                      "writes always, and what it writes if `also` of `[output]` asks for it.\n";
   for (const Described& kind : describe(catalogue)) {
     text += "\n## " + heading(kind) + "\n" + kind.doc + "\n\n" + markdown(rows_of(kind));

@@ -16,14 +16,19 @@ TEST_CASE("the reference of a kind shows every field") {
   CHECK(pair.heading == "[[pair]]");
   CHECK(pair.doc == "Two equal bodies side by side.");
   CHECK(pair.fields == ReferenceRows{{"field", "type", "unit", "default", "range", "meaning"},
+                                     {"name", "text", "", "required", "", "unique name"},
                                      {"spacing", "number", "m", "1", "> 0", "distance of the two"},
                                      {"carrier", "body", "", "\"ground\"", "", "what carries them"}});
   CHECK(pair.channels.empty());
   const KindReference spring = kind_references(small_catalogue(), "spring").front();
   CHECK(spring.heading == "[[element]] of kind \"spring\"");
   const std::vector<std::string> names = testing::spring_kind().fields.names();
-  REQUIRE(spring.fields.size() == names.size() + 1);
-  for (std::size_t i = 0; i < names.size(); ++i) CHECK(spring.fields[i + 1].front() == names[i]);
+  REQUIRE(spring.fields.size() == names.size() + 2); // the heads, and the name
+  CHECK(spring.fields[1].front() == "name");
+  for (std::size_t i = 0; i < names.size(); ++i) CHECK(spring.fields[i + 2].front() == names[i]);
+  const ReferenceRows body = kind_references(small_catalogue(), "body").front().fields;
+  CHECK(std::count_if(body.begin(), body.end(), [](const auto& row) { return row[0] == "name"; }) == 1);
+  CHECK(kind_references(small_catalogue(), "output").front().fields[1].front() != "name"); // there is only one
   CHECK_THROWS_WITH_AS(static_cast<void>(kind_references(small_catalogue(), "sprong")),
                        "error: there is no kind 'sprong' (did you mean 'spring'?)", ModelError);
 }
