@@ -37,6 +37,7 @@ public:
     return may_pull || mu_static > 1.0 ? normal_force(e) : sum_of_forces(e);
   }
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
+    if (mu_static == 0.0) return false; // holds nothing under any normal force
     return std::any_of(contacts.begin(), contacts.end(),
                        [&e](const ContactIndex& contact) { return e.mode[contact.unit] == k_contact_pressed; });
   }

@@ -14,6 +14,9 @@ namespace steplap {
 
 namespace {
 
+// Relative distance of both curves below which they coincide, for rounding errors of the interpolation.
+constexpr double k_same_curve = 1e-12;
+
 using CurveGroup = LawGroup<AxisMeasure, TabulatedSpring>;
 
 // Friction of a buffer, with a bound of half the distance between its curves. Bound and spring table have the same corners, which are
@@ -28,7 +31,9 @@ public:
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
-    return TabulatedSpring::spring_segment(e.mode[unit]) < bound.segments() - 1; // the last segment is the open buffer
+    const int segment = TabulatedSpring::spring_segment(e.mode[unit]);
+    if (segment >= bound.segments() - 1) return false;                      // the last segment is the open buffer
+    return bound.slope(segment) != 0.0 || bound.value(0.0, segment) != 0.0; // where both curves coincide the buffer is a spring
   }
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double*, double* wrench) const override {
     wrench[0] = -state.sign * bound_at<double>(e);
@@ -162,19 +167,24 @@ void compile_buffer(const Element& element, SystemBuilder& builder) {
   row.quantity = "slide";
   row.element = builder.element_index();
   row.base = builder.add_base();
-  friction->bound = table(depths, [&](double d) { return 0.5 * n * (curves.pressed_in(d) - curves.let_go(d)); });
+  friction->bound = table(depths, [&](double d) {
+    const double in = curves.pressed_in(d), between = in - curves.let_go(d);
+    return between > k_same_curve * in ? 0.5 * n * between : 0.0;
+  });
   friction->free = free;
   friction->unit = unit;
 
-  const int f = builder.next_friction(), slot = builder.next_friction_row();
+  const int f = builder.next_friction(), slot = builder.next_friction_row(), last = friction->bound.segments() - 1;
   builder.add_channel("depth", "m", {"by which it is pressed in", "negative: the gap that is left"},
                       motion_value(a.body, b.body, measure, [free](const auto& m) { return free - m.value; }));
   builder.add_channel("rate", "m/s", {"of the depth", "positive: it is pressed in"},
                       motion_value(a.body, b.body, measure, [](const auto& m) { return -m.rate; }));
   builder.add_channel("force", "N", {"of spring and friction, zero while open", "positive: it presses"},
                       [&group, i, slot](const Snapshot& s) { return group.force_of(i, *s.evaluation) + s.friction_force[slot]; });
-  builder.add_channel("mode", "", {"state", "", "0 open, 1 sticks, 2 moves"},
-                      [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
+  builder.add_channel("mode", "", {"state", "", "0 open, 1 sticks, 2 moves"}, [f, unit, last](const Snapshot& s) {
+    if (TabulatedSpring::spring_segment(s.evaluation->mode[unit]) == last) return 0.0;
+    return s.evaluation->friction[f].phase == FrictionPhase::stick ? 1.0 : 2.0;
+  });
   builder.add_friction(std::move(friction));
 }
 

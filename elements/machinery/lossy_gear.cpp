@@ -99,7 +99,7 @@ public:
 
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[mesh.a] = is_used[mesh.b] = is_used[mesh.carrier] = 1; }
-  [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
+  [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return loss != 0.0; }
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double*, double* wrench) const override {
     wrench[0] = -state.sign * bound<double>(e);
   }
@@ -162,7 +162,7 @@ void compile_lossy_gear(const Element& element, SystemBuilder& builder) {
   builder.add_channel("friction", "N m", {"between its teeth, on shaft a", "positive counter-clockwise"},
                       [slot](const Snapshot& s) { return s.friction_force[slot]; });
   builder.add_channel("mode", "", {"what the friction does", "", "1 sticks, 2 slips"},
-                      [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
+                      [f](const Snapshot& s) { return s.evaluation->friction[f].phase == FrictionPhase::stick ? 1.0 : 2.0; });
   builder.add_friction(std::move(friction));
 }
 

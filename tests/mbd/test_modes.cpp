@@ -415,3 +415,64 @@ TEST_CASE("a large scene without vibrations has none, and says what moves freely
   CHECK(found.rigid_motions == 1800);
   CHECK(found.is_all);
 }
+
+// Friction whose bound is zero holds nothing: what it acts along swings as without it.
+TEST_CASE("friction with a bound of zero does not hold a motion") {
+  const auto slowest = [](const std::string& text) {
+    const VibrationModes found = modes_of(text);
+    REQUIRE(!found.modes.empty());
+    return 2.0 * std::numbers::pi * found.modes.front().natural_frequency();
+  };
+  const std::string still = "gravity = [0.0, 0.0]\n";
+  // A buffer with one curve is a spring of 400 N/m at its depth, on 2 kg.
+  const std::string buffer = "gravity = [-20.0, 0.0]\n[[body]]\nname = \"A\"\nmass = 2.0\ninertia = 1.0\nposition = [1.0, 0.0]\n"
+                             "[[element]]\nkind = \"prismatic\"\nname = \"g\"\na = \"A\"\nb = { body = \"ground\", at = [1.0, 0.0] }\n"
+                             "[[element]]\nkind = \"buffer\"\nname = \"s\"\na = \"A\"\naxis = [1.0, 0.0]\ngap = -0.15\n"
+                             "loading = [[0.0, 0.0], [0.1, 20.0], [0.2, 60.0]]\n";
+  CHECK(std::abs(slowest(buffer) / std::sqrt(400.0 / 2.0) - 1.0) < k_digits);
+  CHECK(modes_of(buffer + "unloading = [[0.0, 0.0], [0.1, 10.0], [0.2, 30.0]]\n").modes.empty()); // sticks between two curves
+  // A box of 1000 kg on level feet, held along x by 1000 N/m; the feet bear nothing along x.
+  const auto box = [](const std::string& floor) {
+    return "[[body]]\nname = \"box\"\nmass = 1000.0\ninertia = 500.0\nposition = [0.0, 0.5]\n"
+           "outline = [[-0.8, -0.5], [0.8, -0.5], [0.8, 0.5], [-0.8, 0.5]]\n"
+           "[[element]]\nkind = \"spring_damper\"\nname = \"spring\"\na = \"box\"\nb = { body = \"ground\", at = [-1.0, 0.5] }\n"
+           "axis = [1.0, 0.0]\nstiffness = 1000.0\n" +
+           floor;
+  };
+  const auto feet = [&](double friction) {
+    std::string text;
+    for (const char* x : {"-0.8", "0.8"})
+      text += std::string("[[element]]\nkind = \"unilateral_contact\"\nname = \"foot ") + x + "\"\na = { body = \"box\", at = [" + x +
+              ", 0.0] }\nstiffness = 5e7\n";
+    return box(text +
+               "[[element]]\nkind = \"coulomb_stick\"\nname = \"floor\"\ncontacts = [\"foot -0.8\", \"foot 0.8\"]\n"
+               "static_friction = " +
+               exact(friction) + "\n");
+  };
+  CHECK(std::abs(slowest(feet(0.0)) - 1.0) < k_digits);
+  CHECK(slowest(feet(0.3)) > 100.0); // the feet alone, of 5e7 N/m each
+  const std::string face = "[[element]]\nkind = \"polygon_contact\"\nname = \"floor\"\na = \"box\"\nstiffness = 5e7\n";
+  const VibrationModes none = modes_of(box(face)), zero = modes_of(box(face + "static_friction = 0.0\n"));
+  REQUIRE(none.modes.size() == 3);
+  REQUIRE(zero.modes.size() == 3);
+  for (int i = 0; i < 3; ++i) CHECK(std::abs(zero.modes[i].natural_frequency() / none.modes[i].natural_frequency() - 1.0) < k_digits);
+  // A pendulum whose bearing, at 1e6 N/m, gives little: √(m g l/(J + m l²)) to the ratio of its stiffnesses, m g/l to 1e6 N/m.
+  const auto pendulum = [](const char* friction) {
+    return std::string("[[body]]\nname = \"A\"\nmass = 2.0\ninertia = 3.0\nposition = [0.0, -1.0]\n"
+                       "[[element]]\nkind = \"bearing\"\nname = \"b\"\na = { body = \"A\", at = [0.0, 0.0] }\nstiffness = 1e6\n"
+                       "radius = 0.1\nstatic_friction = ") +
+           friction + "\n";
+  };
+  CHECK(std::abs(slowest(pendulum("0.0")) / std::sqrt(2.0 * 9.81 / 5.0) - 1.0) < 1e-4);
+  CHECK(slowest(pendulum("0.2")) > 100.0);
+  // A gear without losses against a shaft that is held: 200 N m/rad on 3 kg m².
+  const auto gear = [&still](const char* efficiency) {
+    return still +
+           "[[body]]\nname = \"a\"\nmass = 1.0\ninertia = 3.0\n[[element]]\nkind = \"revolute\"\nname = \"p\"\na = \"a\"\n"
+           "[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 3.0\nposition = [1.0, 0.0]\n"
+           "[[element]]\nkind = \"weld\"\nname = \"held\"\na = \"b\"\n"
+           "[[element]]\nkind = \"lossy_gear\"\nname = \"s\"\na = \"a\"\nb = \"b\"\nratio = 2.0\nstiffness = 200.0\nefficiency = " +
+           efficiency + "\n";
+  };
+  CHECK(std::abs(slowest(gear("1.0")) / std::sqrt(200.0 / 3.0) - 1.0) < k_digits);
+}
