@@ -3,7 +3,9 @@
 #include "mbd/base/decompositions.h"
 #include "mbd/rest/free_vibration.h"
 #include "mbd/rest/sparse_modes.h"
+#include "mbd/rest/statics.h"
 #include "mbd/rest/tangent.h"
+#include "mbd/system/own_states.h"
 
 #include <algorithm>
 #include <cmath>
@@ -116,6 +118,109 @@ VibrationModes some_modes(const System& system, const State& state, const Wanted
 }
 
 } // namespace
+
+namespace {
+
+// Distance from the end of a piece of a law, in sizes of the model or in these per second, below which the rest is at that end.
+constexpr double k_at_kink = 1e-9;
+// Relative difference of stiffnesses and dampings below which two pieces of a law continue each other.
+constexpr double k_same_slope = 1e-9;
+// Rate of an inner state relative to the velocity of its element above which its force follows the motion. That of a tyre's tread at rest is
+// its deflection over the relaxation length, a term of second order.
+constexpr double k_felt = 1e-2;
+
+// Returns "'a', 'b' and 3 more".
+std::string list_of(const System& system, const std::vector<int>& elements) {
+  constexpr std::size_t k_named = 5;
+  std::string text;
+  const std::size_t named = std::min(k_named, elements.size());
+  for (std::size_t i = 0; i < named; ++i) text += (i > 0 ? ", '" : "'") + system.element_names[elements[i]] + "'";
+  return elements.size() > named ? text + " and " + std::to_string(elements.size() - named) + " more" : text;
+}
+
+// Returns the elements whose force changes with an inner state that changes with the motion.
+std::vector<int> following_inner_states(const System& system, const Evaluation& evaluation) {
+  std::vector<int> elements;
+  std::vector<InnerJacobian> parts;
+  for (const ForceGroup* group : system.inner_groups) group->add_inner_jacobian(evaluation, parts);
+  for (const InnerJacobian& part : parts) {
+    if (!((part.force * part.by_velocity).cwiseAbs().maxCoeff() > k_felt * part.force.cwiseAbs().maxCoeff())) continue;
+    const int element = system.inner_elements[part.first];
+    if (elements.empty() || elements.back() != element) elements.push_back(element);
+  }
+  const OwnStateGroup* const states = own_state_group(system);
+  if (!states) return elements;
+  StateJacobian own;
+  for (const auto& group : system.groups) group->add_state_jacobian(evaluation, own);
+  for (const StateJacobian::Force& force : own.forces) {
+    const auto is_moved = [&force](const StateJacobian::ByMotion& m) {
+      return m.inner == force.inner && !(m.pose.isZero(0.0) && m.velocity.isZero(0.0));
+    };
+    const auto state = std::find_if(states->entries.begin(), states->entries.end(),
+                                    [&force](const OwnStateGroup::ElementData& entry) { return entry.place.inner == force.inner; });
+    if (state == states->entries.end()) continue;
+    const int element = state->element;
+    if (std::find(elements.begin(), elements.end(), element) == elements.end() &&
+        std::any_of(own.by_motion.begin(), own.by_motion.end(), is_moved))
+      elements.push_back(element);
+  }
+  return elements;
+}
+
+// Returns true if the stiffness or damping of the group in the modes of `one` differs from that in those of `other`.
+bool has_other_slopes(const ForceGroup& group, const Evaluation& one, const Evaluation& other) {
+  std::vector<PairJacobian> here, there;
+  group.add_jacobian(one, here);
+  group.add_jacobian(other, there);
+  if (here.size() != there.size()) return true;
+  const auto differ = [](const auto& a, const auto& b) {
+    return (a - b).cwiseAbs().maxCoeff() > k_same_slope * std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+  };
+  for (std::size_t i = 0; i < here.size(); ++i)
+    if (differ(here[i].stiffness, there[i].stiffness) || differ(here[i].damping, there[i].damping)) return true;
+  return false;
+}
+
+// Returns the elements whose law has a kink at the rest: an end of its present piece lies there, and the next piece has another slope.
+std::vector<int> at_kinks(const System& system, const State& state, const Evaluation& evaluation) {
+  std::vector<int> elements;
+  const double near = k_at_kink * scale_of(system, state).length;
+  std::vector<UnitMode> modes = state.mode;
+  Evaluation beyond = evaluation;
+  beyond.mode = modes.data();
+  for (std::size_t u = 0; u < system.units.size(); ++u) {
+    const Unit& unit = system.units[u];
+    for (int slot = 0; slot < unit.event_count; ++slot) {
+      if (unit.group->event_tolerance(slot) == EventTolerance::none) continue;
+      if (!(std::abs(evaluation.event_value[unit.first_event + slot]) <= near)) continue;
+      const UnitMode next = unit.group->next_mode(unit.index, state.mode[u], slot, evaluation);
+      if (next == state.mode[u]) continue;
+      modes[u] = next;
+      const bool is_kink = has_other_slopes(*unit.group, evaluation, beyond);
+      modes[u] = state.mode[u];
+      if (!is_kink) continue;
+      elements.push_back(unit.element);
+      break;
+    }
+  }
+  return elements;
+}
+
+} // namespace
+
+std::vector<std::string> remarks_on_modes(const System& system, const State& state) {
+  State still = state;
+  Statics statics(system);
+  statics.evaluate(still);
+  std::vector<std::string> remarks;
+  if (const std::vector<int> elements = following_inner_states(system, statics.evaluation()); !elements.empty())
+    remarks.push_back("the modes hold the inner state of " + list_of(system, elements) +
+                      ", which changes with the motion: what that adds to stiffness and damping is left out");
+  if (const std::vector<int> elements = at_kinks(system, still, statics.evaluation()); !elements.empty())
+    remarks.push_back("the rest is at a kink of " + list_of(system, elements) +
+                      ": the modes have the stiffness and damping of one side of it, and a vibration crosses both");
+  return remarks;
+}
 
 VibrationModes vibration_modes(const System& system, const State& state, WantedModes wanted, ModesAlgebra algebra) {
   VibrationModes found;

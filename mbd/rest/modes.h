@@ -65,4 +65,8 @@ enum class ModesAlgebra { by_size, dense, sparse }; ///< Algebra for the modes. 
 [[nodiscard]] VibrationModes vibration_modes(const System& system, const State& state, WantedModes wanted = {},
                                              ModesAlgebra algebra = ModesAlgebra::by_size);
 
+/// Returns notes on what vibration_modes() leaves out about `state`, one sentence each: inner states that forces follow, which count as
+/// held, and laws that have a kink exactly there, of which one side counts.
+[[nodiscard]] std::vector<std::string> remarks_on_modes(const System& system, const State& state);
+
 } // namespace steplap

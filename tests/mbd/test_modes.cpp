@@ -476,3 +476,25 @@ TEST_CASE("friction with a bound of zero does not hold a motion") {
   };
   CHECK(std::abs(slowest(gear("1.0")) / std::sqrt(200.0 / 3.0) - 1.0) < k_digits);
 }
+
+TEST_CASE("what the modes leave out is said: inner states that are held, and kinks at the rest") {
+  const auto remarks = [](const std::string& more) {
+    const auto system =
+        compile(parse_model("gravity = [0.0, 0.0]\n" + std::string(k_guided_mass) + more, "scene.toml", transformer_catalog()));
+    const State rest = find_equilibrium(*system, system->initial_state()).state;
+    std::string text;
+    for (const std::string& remark : remarks_on_modes(*system, rest)) text += remark + "\n";
+    return text;
+  };
+  CHECK(remarks("").empty());
+  // In series with a damper, a spring stiffens fast vibrations and damps slow ones.
+  CHECK(remarks("[[element]]\nkind = \"maxwell\"\nname = \"creep\"\na = \"mass\"\naxis = [0.0, 1.0]\nstiffness = 300.0\ndamping = 30.0\n")
+            .find("'creep'") != std::string::npos);
+  const auto table = [&](const char* points) {
+    return remarks(std::string("[[element]]\nkind = \"spring_damper\"\nname = \"bent\"\na = \"mass\"\naxis = [0.0, 1.0]\nforce_table = ") +
+                   points + "\n");
+  };
+  CHECK(table("[[-0.1, -5.0], [0.0, 0.0], [0.1, 20.0]]").find("kink of 'bent'") != std::string::npos); // 50 N/m below, 200 N/m above
+  CHECK(table("[[-0.1, -20.0], [0.0, 0.0], [0.1, 20.0]]").empty());                                    // one slope
+  CHECK(table("[[-0.1, -5.0], [-0.01, 0.0], [0.1, 20.0]]").empty());                                   // 10 mm away
+}

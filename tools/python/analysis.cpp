@@ -24,6 +24,7 @@ std::vector<PyMode> modes(const PyModel& model, int count, std::optional<double>
   if (count < 0) throw py::value_error("count: 0 for all, or how many");
   if (near && !(*near > 0.0)) throw py::value_error("near: a frequency above zero, Hz");
   State state = rest_of(model).state;
+  warn_of(remarks_on_modes(*model.loaded->system, state));
   return computed([&](const StopQuestion&) {
     std::fill(state.v.begin(), state.v.end(), 0.0);
     std::vector<PyMode> all;

@@ -30,6 +30,8 @@ struct PyModel {
 
 /// Returns the model before completion, so that values can be set in it.
 [[nodiscard]] Model given_model(const PyModel& model);
+/// Raises each remark as a warning of Python.
+void warn_of(const std::vector<std::string>& remarks);
 /// Returns the equilibrium of a model. Remarks on it (remarks_on()) become warnings of Python. Throws as equilibrium_of() does.
 [[nodiscard]] Equilibrium rest_of(const PyModel& model);
 

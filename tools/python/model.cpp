@@ -42,10 +42,14 @@ py::dict equilibrium(const PyModel& model) {
 
 } // namespace
 
+void warn_of(const std::vector<std::string>& remarks) {
+  for (const std::string& remark : remarks)
+    if (PyErr_WarnEx(PyExc_UserWarning, remark.c_str(), 1) != 0) throw py::error_already_set(); // warnings count as errors
+}
+
 Equilibrium rest_of(const PyModel& model) {
   Equilibrium found = computed([&](const StopQuestion&) { return equilibrium_of(*model.loaded); });
-  for (const std::string& remark : remarks_on(*model.loaded->system, found))
-    if (PyErr_WarnEx(PyExc_UserWarning, remark.c_str(), 1) != 0) throw py::error_already_set(); // warnings count as errors
+  warn_of(remarks_on(*model.loaded->system, found));
   return found;
 }
 

@@ -141,10 +141,16 @@ std::string modes_csv(const System& system, const VibrationModes& found) {
   return csv.text();
 }
 
+std::vector<std::string> all_remarks(const LoadedModel& loaded, const Equilibrium& rest) {
+  std::vector<std::string> remarks = remarks_on(*loaded.system, rest);
+  for (std::string& remark : remarks_on_modes(*loaded.system, rest.state)) remarks.push_back(std::move(remark));
+  return remarks;
+}
+
 std::string page_of(const LoadedModel& loaded, const Equilibrium& rest, const VibrationModes& found, const WantedModes& wanted) {
   std::vector<std::string> moves_most;
   for (const VibrationMode& mode : found.modes) moves_most.push_back(shape_text(*loaded.system, mode));
-  std::vector<std::string> remarks = remarks_on(*loaded.system, rest);
+  std::vector<std::string> remarks = all_remarks(loaded, rest);
   if (!found.is_all) remarks.push_back(choice_text(found, wanted));
   return modes_page(loaded, rest, found, moves_most, remarks);
 }
@@ -161,7 +167,7 @@ ExitCode modes(const ModesOptions& options, Console& console) {
     if (options.output) files.write(options.output, modes_csv(*loaded->system, found));
     if (options.page) files.write(options.page, page_of(*loaded, rest, found, wanted));
     if (files.may_print()) print_modes(console.out, *loaded, found, wanted);
-    for (const std::string& remark : remarks_on(*loaded->system, rest)) log_warning("'" + loaded->path + "': " + remark);
+    for (const std::string& remark : all_remarks(*loaded, rest)) log_warning("'" + loaded->path + "': " + remark);
   } catch (const NumericalFailure& failure) {
     log_error("'" + loaded->path + "': " + failure.what());
     return ExitCode::numerical_failure;
