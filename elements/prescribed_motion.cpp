@@ -73,10 +73,13 @@ void compile_prescribed(const Element& element, SystemBuilder& builder) {
   row.level = level_of(e.as);
   if (const auto jump = row.drive->first_jump(row.level, 0.0, builder.model().simulation.end)) return builder.error(jump_message(e, *jump));
   const double now = evaluate_row<false>(row, &builder.reference(0)).value;
-  const double base = e.zero == "reference" ? now : 0.0;
+  // The measure of an angle is that of the bodies; a position is of the markers' axes.
+  const double zero = row.kind == MeasureKind::angle ? b.angle - a.angle : 0.0;
+  const double base = e.zero == "reference" ? now : zero;
   // Necessary even for a position relative to the reference pose, because the start would move the body without notice.
   if (row.level == DriveLevel::position)
-    if (const double wanted = base + row.drive->value(0.0); jumps(now, wanted)) return builder.error(start_message(e, row, now, wanted));
+    if (const double wanted = base + row.drive->value(0.0); jumps(now, wanted))
+      return builder.error(start_message(e, row, now - zero, wanted - zero));
   row.base = builder.add_base(base);
   const int r = builder.next_row();
   builder.add_channel("reaction", row.kind == MeasureKind::angle ? "N m" : "N",
@@ -106,7 +109,7 @@ const ElementKind& prescribed_motion_kind() {
     f.add("b", &T::b).as(FieldType::marker).doc("marker whose axes count");
     f.add("coordinate", &T::coordinate)
         .one_of({"x", "y", "angle", "distance"})
-        .doc("x, y: of marker a in marker b's axes; angle of a against b; distance of the markers");
+        .doc("x, y: of marker a in marker b's axes; angle of a's axes against b's; distance of the markers");
     f.add("signal", &T::signal)
         .as(FieldType::signal)
         .in("rad|m")

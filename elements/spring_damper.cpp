@@ -137,6 +137,7 @@ void compile_rotational(const Element& element, SystemBuilder& builder) {
   same.count = e.count;
   if (!check(same, builder, "'free_angle'", "'couple_table'")) return;
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
+  if (same.free_length) *same.free_length += b.angle - a.angle; // it is of the markers' axes, the measure of the bodies'
   add_with_law(same, builder, a.body, b.body, AngleMeasure{});
 }
 
@@ -209,7 +210,7 @@ const ElementKind& rotational_spring_damper_kind() {
     f.add("stiffness", &T::stiffness).in("N m/rad").not_negative().doc("k of one element");
     f.add("damping", &T::damping).in("N m s/rad").not_negative().doc("c of one element");
     f.add("count", &T::count).at_least(1).doc("equal elements side by side");
-    f.add("free_angle", &T::free_angle).in("rad").doc("default: the angle of the reference pose");
+    f.add("free_angle", &T::free_angle).in("rad").doc("of marker a's axes against marker b's; default: that of the reference pose");
     f.add("preload", &T::preload).in("N m").doc("couple on a in the reference pose, instead of free_angle");
     f.add("gap", &T::gap).in("rad").not_negative().doc("width of a dead band around the free angle");
     f.add("couple_table", &T::couple_table).in("rad", "N m").doc("[d, -couple] pairs instead of stiffness");

@@ -159,6 +159,36 @@ TEST_CASE("a part that is turned with gravity moves as one that is not, turned")
   CHECK(turned.q[5] == doctest::Approx(straight.q[5] + turn).epsilon(1e-8));
 }
 
+TEST_CASE("angles against a part's ground turn with it: those of springs and of positions that a drive follows") {
+  const Folder folder;
+  const double begin = 0.3, turn = 1.5, stiffness = 40.0;
+  const std::string rod =
+      "format = 1\n[simulation]\nend = 0.05\n[[body]]\nname = \"rod\"\nmass = 2.0\ninertia = 3.0\nposition = [0.0, 0.0]\n"
+      "angle = 0.3\n[[element]]\nkind = \"revolute\"\nname = \"pin\"\na = \"rod\"\n";
+  const auto turned = [&](const std::string& element) {
+    folder.write("part.toml", rod + element);
+    folder.write("whole.toml",
+                 "format = 1\ngravity = [0.0, 0.0]\n[simulation]\nend = 0.05\n[[part]]\nname = \"P\"\nfile = \"part.toml\"\nangle = 1.5\n");
+    return read(folder / "whole.toml");
+  };
+  // At the free angle the rod rests; half a radian from it, it turns by ½ ω² ½ t² to leading order, ω² = k/J, whichever end is the ground's.
+  for (const char* ends : {"a = \"rod\"\n", "a = \"ground\"\nb = \"rod\"\n"}) {
+    const double sign = ends[5] == 'r' ? 1.0 : -1.0; // the angle of the ground against the rod is the negative one
+    for (const double off : {0.0, 0.5}) {
+      const Model model = turned("[[element]]\nkind = \"rotational_spring_damper\"\nname = \"spring\"\nstiffness = 40.0\n" +
+                                 std::string(ends) + "free_angle = " + std::to_string(sign * (begin + off)) + "\n");
+      const auto system = instantiate(model, {});
+      const double end = simulate(*system, system->initial_state(), options_of(model)).final_state.q[5] - turn - begin;
+      const double swing = off * (1.0 - std::cos(std::sqrt(stiffness / 3.0) * 0.05));
+      CHECK(std::abs(end - swing) < 1e-8); // the tolerance of the run
+    }
+  }
+  const Model driven = turned("[[signal]]\nname = \"way\"\nkind = \"constant\"\nvalue = 0.3\n[[element]]\nkind = \"prescribed_motion\"\n"
+                              "name = \"drive\"\na = \"rod\"\ncoordinate = \"angle\"\nas = \"position\"\nsignal = \"way\"\n");
+  const auto system = instantiate(driven, {});
+  CHECK(std::abs(simulate(*system, system->initial_state(), options_of(driven)).final_state.q[5] - turn - begin) < 1e-12);
+}
+
 TEST_CASE("repeat writes out what it stands for") {
   const Folder folder;
   folder.write("repeated.toml", std::string(k_head) + R"toml([parameters]
