@@ -498,6 +498,7 @@ std::vector<Finding> findings_of(const LoadedModel& loaded) {
   for (const auto check : loaded.views->assembly_checks) append(findings, check(loaded));
   for (const auto check : loaded.views->scene_checks) append(findings, check(loaded));
   append(findings, implausible_findings(loaded));
+  append(findings, start_slides(loaded));
   if (is_judged(model)) append(findings, loads_beyond_end(loaded));
   warn_of_shared_reactions(*loaded.system, findings);
   const Trajectory written(*loaded.system, model.output.channels);

@@ -3,6 +3,7 @@
 #include "mbd/base/name_pattern.h"
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/base/stop.h"
 #include "mbd/rest/equilibrium.h"
 #include "mbd/run/body_reach.h"
 #include "mbd/run/quantity_text.h"
@@ -163,6 +164,52 @@ std::vector<Finding> distant_rest_findings(const LoadedModel& loaded, const RunR
                           quantity_text(turn, "rad", 1e-3) +
                           " to get there. Check its pose, and stiffnesses and preloads of what carries it",
                       worst->where});
+  return findings;
+}
+
+namespace {
+
+// Returns true if a criterion forbids the beginning of a slip of this element.
+bool forbids_slips(const Model& model, const std::string& element) {
+  return std::any_of(model.criteria.begin(), model.criteria.end(), [&](const Criterion& criterion) {
+    if (criterion.event.empty() || !matches_pattern(element, criterion.element.empty() ? "*" : criterion.element)) return false;
+    const EventKinds kinds = event_kinds_matching(criterion.event);
+    const auto forbids = [&kinds](EventKind kind) { return kinds.test(static_cast<std::size_t>(kind)); };
+    return forbids(EventKind::slips) || forbids(EventKind::slips_forward) || forbids(EventKind::slips_backward);
+  });
+}
+
+} // namespace
+
+std::vector<Finding> start_slides(const LoadedModel& loaded) {
+  const Model& model = loaded.model;
+  const System& system = *loaded.system;
+  const auto may_slip = [](const FrictionUnit& unit) { return !unit.friction->never_slips(); };
+  if (model.simulation.initial != "equilibrium" || std::none_of(system.frictions.begin(), system.frictions.end(), may_slip)) return {};
+  Equilibrium rest;
+  try {
+    rest = equilibrium_of(loaded);
+  } catch (const RunStopped&) {
+    throw;
+  } catch (const NumericalFailure&) { // the run reports it
+    return {};
+  }
+  std::vector<Finding> findings;
+  const auto add = [&](int f, const char* how) {
+    const std::string& name = system.element_names[system.frictions[f].element];
+    const bool is_forbidden = forbids_slips(model, name);
+    const auto entry =
+        std::find_if(model.elements.begin(), model.elements.end(), [&name](const ElementEntry& one) { return one.element->name == name; });
+    findings.push_back({"start_slid", is_forbidden ? FindingLevel::warning : FindingLevel::note,
+                        "'" + name + "' " + how + " before the run begins" +
+                            (is_forbidden ? ", where no event reports what a criterion forbids" : "") +
+                            ": place the bodies, and preloads, where friction holds",
+                        entry == model.elements.end() ? Location{} : entry->element->where});
+  };
+  for (const int f : rest.slid) add(f, "could not hold where the search for rest loaded it: it slides");
+  if (rest.is_settled && rest.slid.empty()) // its slides are not followed
+    for (const FrictionMargin& margin : rest.margins)
+      add(margin.friction, "holds where the machine comes to rest when it is released with strong damping: it may slide");
   return findings;
 }
 

@@ -93,8 +93,10 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
   const RunResult& result = report.run.result;
   report.findings = std::move(before);
   for (const Finding& finding : findings_after(loaded, result)) add_finding(report, finding, options);
-  if (!options.start)
+  if (!options.start) {
     for (const Finding& finding : distant_rest_findings(loaded, result)) add_finding(report, finding, options);
+    for (const Finding& finding : start_slides(loaded)) add_finding(report, finding, options);
+  }
   for (const Event& event : result.events) ++report.event_counts[words_of(event.kind)];
   const RunStatistics& s = result.statistics;
   if (s.energy_exchanged > 0.0) report.relative_energy_residual = s.energy_residual / s.energy_exchanged;

@@ -296,3 +296,29 @@ TEST_CASE("a rest that is found by overturning a body caps the verdict") {
   CHECK(overturned.judgement.verdict == Verdict::open);
   CHECK_FALSE(found(run_of(box(2.0)).findings, "start_overturned"));
 }
+
+// A rope with a pretension beyond the friction of a box of 100 kg, 0.3 m g = 294 N, pulls it until it is as slack as friction holds.
+TEST_CASE("friction that slides in the search for the rest is told, and caps the verdict where slips are forbidden") {
+  const auto box = [](double pretension, const std::string& criterion) {
+    std::string text = "simulation = { end = 0.1, initial = \"equilibrium\" }\n"
+                       "[[body]]\nname = \"box\"\nmass = 100.0\ninertia = 10.0\nposition = [0.0, 0.5]\n";
+    for (const std::string x : {"-0.5", "0.5"})
+      text += "[[element]]\nkind = \"unilateral_contact\"\nname = \"foot " + x + "\"\na = { body = \"box\", at = [" + x +
+              ", 0.0] }\nstiffness = 1e7\ndamping = 1e4\n";
+    return text +
+           "[[element]]\nkind = \"coulomb_stick\"\nname = \"floor\"\ncontacts = [\"foot -0.5\", \"foot 0.5\"]\n"
+           "static_friction = 0.3\n[[element]]\nkind = \"rope\"\nname = \"rope\"\na = \"box\"\n"
+           "b = { body = \"ground\", at = [-2.0, 0.5] }\nstiffness = 1e5\npretension = " +
+           number(pretension) + "\n[[acceptance]]\nname = \"held\"\n" + criterion;
+  };
+  const std::string no_slip = "event = \"slips*\"\n", place = "channel = \"box.y\"\nwithin = \"1 m\"\n";
+  const Report forbidden = run_of(box(400.0, no_slip)), allowed = run_of(box(400.0, place)), held = run_of(box(200.0, no_slip));
+  REQUIRE(found(forbidden.findings, "start_slid"));
+  CHECK(found(forbidden.findings, "start_slid")->level == FindingLevel::warning);
+  CHECK(forbidden.judgement.verdict == Verdict::open);
+  REQUIRE(found(allowed.findings, "start_slid"));
+  CHECK(found(allowed.findings, "start_slid")->level == FindingLevel::note);
+  CHECK(allowed.judgement.verdict == Verdict::hold);
+  CHECK_FALSE(found(held.findings, "start_slid"));
+  CHECK(held.judgement.verdict == Verdict::hold);
+}
