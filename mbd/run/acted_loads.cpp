@@ -352,6 +352,67 @@ std::vector<Finding> loads_beyond_end(const LoadedModel& loaded) {
   return findings_of_uses(loaded, acting_signals_without_actions(loaded.model, end), Judge(loaded, end, nullptr, nullptr, false));
 }
 
+namespace {
+
+// Finds pulses without a rise, in a signal or in those of which it is made, that begin exactly at the start of the run.
+class SuddenPulses {
+public:
+  explicit SuddenPulses(const Model& model) : model_(model), network_(model) {}
+
+  [[nodiscard]] const SignalEntry* first_in(const std::string& name) {
+    const auto entry =
+        std::find_if(model_.signals.begin(), model_.signals.end(), [&](const SignalEntry& each) { return each.definition->name == name; });
+    const Signal* const signal = entry == model_.signals.end() ? nullptr : network_.build(name);
+    if (!signal || signal->value(0.0) == 0.0) return nullptr;
+    if (entry->kind->name == "rectangle" || entry->kind->name == "trapezoid")
+      return signal->pieces().front().start == 0.0 ? &*entry : nullptr;
+    for (const Field& field : entry->kind->fields.fields()) {
+      std::vector<std::string> names;
+      if (field.type == FieldType::signal) names = {std::get<std::string>(field.get(entry->definition.get()))};
+      if (field.type == FieldType::signals) names = std::get<std::vector<std::string>>(field.get(entry->definition.get()));
+      for (const std::string& part : names)
+        if (const SignalEntry* const found = first_in(part)) return found;
+    }
+    return nullptr;
+  }
+  [[nodiscard]] double at_start(const SignalEntry& entry) { return network_.build(entry.definition->name)->value(0.0); }
+
+private:
+  const Model& model_;
+  SignalNetwork network_;
+};
+
+// Returns true if the signal is a force or couple. Positions that drives prescribe are held in the search for equilibrium, and the pressure
+// of a brake has to act there.
+bool is_force(const Model& model, const ActingSignal& use) {
+  const ElementEntry& entry = model.elements[use.element];
+  if (use.field == "formula") return entry.kind->acts_from_outside && entry.kind->acts_from_outside(*entry.element, model);
+  const Field* const field = entry.kind->fields.find(use.field);
+  return field && field->unit.starts_with("N");
+}
+
+} // namespace
+
+std::vector<Finding> pulses_at_rest(const LoadedModel& loaded) {
+  const Model& model = loaded.model;
+  if (model.simulation.initial != "equilibrium") return {};
+  SuddenPulses pulses(model);
+  std::vector<Finding> findings;
+  std::unordered_set<const SignalEntry*> known;
+  for (const ActingSignal& use : acting_signals_without_actions(model, model.simulation.end)) {
+    if (use.signal.empty() || use.spans.empty() || !is_force(model, use)) continue;
+    const SignalEntry* const pulse = pulses.first_in(use.signal);
+    if (!pulse || !known.insert(pulse).second) continue;
+    findings.push_back(
+        warning("pulse_at_rest",
+                "signal '" + pulse->definition->name + "' jumps to " + number_text(pulses.at_start(*pulse)) +
+                    " exactly at the start, and the run begins at rest under it, as if it had always acted: it is no blow. A "
+                    "blow begins later (start = \"1 ms\"), a load from which the machine is let go before (start = \"-1 s\")",
+                pulse->definition->where));
+  }
+  return findings;
+}
+
 std::vector<Finding> loads_not_acted(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement) {
   if (!result.stop_reason.empty()) return {}; // an element that came apart ended the run; the verdict reports it
   const ReserveHistory growth(result,

@@ -22,6 +22,9 @@ namespace steplap {
 
 /// Returns, before a run, a finding for each signal that the end of the run cuts off. Assumes that no action is executed.
 [[nodiscard]] std::vector<Finding> loads_beyond_end(const LoadedModel& loaded);
+/// Returns, before a run that begins in equilibrium, a warning for each pulse that jumps from zero exactly at the start and is a force: the
+/// search for the equilibrium takes it as acting before, so that it is no blow.
+[[nodiscard]] std::vector<Finding> pulses_at_rest(const LoadedModel& loaded);
 /// Returns, after a completed run, one finding for each load that has not acted completely. `judgement` belongs to `result`.
 [[nodiscard]] std::vector<Finding> loads_not_acted(const LoadedModel& loaded, const RunResult& result, const Judgement& judgement);
 

@@ -388,6 +388,7 @@ std::vector<Finding> findings_before(const LoadedModel& loaded) {
   append(findings, start_findings(loaded));
   append(findings, implausible_findings(loaded));
   append(findings, idle_actions(loaded));
+  append(findings, pulses_at_rest(loaded));
   if (const std::optional<Finding> changed = changed_velocity(loaded)) findings.push_back(*changed);
   if (const std::optional<Finding> moved = note_of_moves(loaded)) {
     findings.push_back(*moved);
@@ -495,6 +496,7 @@ std::vector<Finding> findings_of(const LoadedModel& loaded) {
   warn_of_unused_parameters(model, findings);
   warn_of_idle_elements(model, findings);
   append(findings, idle_actions(loaded));
+  append(findings, pulses_at_rest(loaded));
   for (const auto check : loaded.views->assembly_checks) append(findings, check(loaded));
   for (const auto check : loaded.views->scene_checks) append(findings, check(loaded));
   append(findings, implausible_findings(loaded));

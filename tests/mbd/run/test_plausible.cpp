@@ -322,3 +322,36 @@ TEST_CASE("friction that slides in the search for the rest is told, and caps the
   CHECK_FALSE(found(held.findings, "start_slid"));
   CHECK(held.judgement.verdict == Verdict::hold);
 }
+
+TEST_CASE("a pulse that jumps exactly at the start of a run from rest is told, since it is no blow there") {
+  const auto mass = [](const std::string& signal, const std::string& load = "kind = \"load\"\nat = \"A\"\nforce_x = \"push\"\n") {
+    return "gravity = [0.0, 0.0]\nsimulation = { end = 1.5, initial = \"equilibrium\" }\n"
+           "[[body]]\nname = \"A\"\nmass = 2.0\ninertia = 1.0\n[[element]]\nkind = \"bushing\"\nname = \"mount\"\na = \"A\"\n"
+           "stiffness = [200.0, 200.0]\ndamping = [2.0, 2.0]\nrotational_stiffness = 10.0\n"
+           "[[acceptance]]\nname = \"travel\"\nchannel = \"A.x\"\nwithin = \"75 mm\"\n[[element]]\nname = \"acts\"\n" +
+           load + signal;
+  };
+  const auto pulse = [](const std::string& kind, const std::string& more) {
+    return "[[signal]]\nname = \"push\"\nkind = \"" + kind + "\"\n" + more;
+  };
+  const std::string step = "peak = 10.0\nduration = 0.5\n";
+  const Report hidden = run_of(mass(pulse("rectangle", step)));
+  REQUIRE(found(hidden.findings, "pulse_at_rest"));
+  CHECK(hidden.judgement.verdict == Verdict::open);
+  // From rest without load it swings to nearly 2 F/k = 100 mm; let go from F/k = 50 mm it stays within.
+  const Report later = run_of(mass(pulse("rectangle", step + "start = 0.001\n"))),
+               before = run_of(mass(pulse("rectangle", "peak = 10.0\nduration = 1.5\nstart = -1.0\n")));
+  CHECK_FALSE(found(later.findings, "pulse_at_rest"));
+  CHECK(later.judgement.verdict == Verdict::inspect);
+  CHECK_FALSE(found(before.findings, "pulse_at_rest"));
+  CHECK(before.judgement.verdict == Verdict::hold);
+  // What is continuous at the start, and what is no pulse, acts at rest as it did.
+  for (const std::string& signal :
+       {pulse("trapezoid", step + "rise = 0.1\nfall = 0.1\n"), pulse("half_sine", step), pulse("constant", "value = 10.0\n")})
+    CHECK_FALSE(found(run_of(mass(signal)).findings, "pulse_at_rest"));
+  CHECK(found(run_of(mass(pulse("sum", "signals = [\"part\"]\n") + "[[signal]]\nname = \"part\"\nkind = \"rectangle\"\n" + step)).findings,
+              "pulse_at_rest"));
+  // The pressure of a brake has to act in the search.
+  const std::string brake = "kind = \"joint_friction\"\na = \"A\"\nholds = 10.0\nsignal = \"push\"\n";
+  CHECK_FALSE(found(run_of(mass(pulse("rectangle", step), brake)).findings, "pulse_at_rest"));
+}
