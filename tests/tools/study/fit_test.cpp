@@ -126,6 +126,33 @@ TEST_CASE("a fit to an exact record finds friction and pulse") {
   CHECK(bench.find("fit", "value", "duration").value == doctest::Approx(k_duration).epsilon(1e-6));
 }
 
+// A mass of 10 kg on a spring of 1 kN/m swings at 1.59 Hz and is read four times a second: many stiffnesses between 0.2 and 5 kN/m fit some of
+// the readings, in valleys of their own. The units stand in the header only.
+TEST_CASE("a fit finds the deepest of many valleys, and reads units in the header") {
+  const double k = 1000.0, c = 5.0, m = 10.0, decay = c / (2.0 * m), omega = std::sqrt(k / m - decay * decay);
+  std::string readings = "t [ms],x [cm]\n";
+  for (int i = 0; i < 8; ++i) {
+    const double t = 0.25 * i, x = 0.1 * std::exp(-decay * t) * (std::cos(omega * t) + decay / omega * std::sin(omega * t));
+    readings += number(1e3 * t) + "," + number(100.0 * x) + "\n";
+  }
+  StudyBench bench;
+  bench.write("swing.toml", "format = 1\n[simulation]\nend = 2.0\ntolerance = 1e-8\n[[body]]\nname = \"m\"\nmass = 10.0\ninertia = 1.0\n"
+                            "position = [0.1, 0.0]\n[[element]]\nkind = \"prismatic\"\nname = \"g\"\na = \"m\"\naxis = [1.0, 0.0]\n"
+                            "[[element]]\nkind = \"spring_damper\"\nname = \"s\"\na = \"m\"\nb = { body = \"ground\", at = [-1.0, 0.0] }\n"
+                            "stiffness = 1500.0\ndamping = 8.0\nfree_length = 1.0\n");
+  bench.write("readings.csv", readings);
+  const std::string history = "kind = \"fit\"\nmodel = \"swing.toml\"\n[[history]]\nname = \"way\"\nchannel = \"m.x\"\n"
+                              "file = \"readings.csv\"\n";
+  const std::string variables = "[[variable]]\nname = \"k\"\npath = \"element.s.stiffness\"\nrange = [200.0, 5000.0]\n"
+                                "[[variable]]\nname = \"c\"\npath = \"element.s.damping\"\nrange = [0.5, 50.0]\n";
+  const Outcome outcome = bench.run(history + variables);
+  CAPTURE(outcome.out);
+  REQUIRE(outcome.code == 0);
+  CHECK(bench.find("fit", "value", "k").value == doctest::Approx(k).epsilon(1e-4)); // the runs are known to 1e-8 of 0.1 m
+  CHECK(bench.find("fit", "value", "c").value == doctest::Approx(c).epsilon(1e-2));
+  CHECK(bench.run(history + "unit = \"mm\"\n" + variables).code != 0); // and the header says cm
+}
+
 // The squared distance of what was found from what is true, by the stated covariance, is χ² of three degrees of freedom
 // in each repetition: of 24 in eight. Too narrow intervals make it large, too wide ones small. (100 repetitions:
 // fit_repeatedly.)
