@@ -132,8 +132,9 @@ void add_friction(const Bearing& e, const CompiledMarker& a, const CompiledMarke
   add_share_channel(builder, *friction);
   builder.add_channel("slip_rate", "rad/s", {"of a against b", "positive: a turns counter-clockwise"},
                       [row](const Snapshot& s) { return evaluate_row<false>(row, s.motion).rate; });
-  builder.add_channel("mode", "", {"what the friction does", "", "0 free, 1 sticks, 2 slips"},
-                      [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
+  builder.add_channel(
+      "mode", "", {"what the friction does", "", "0 free, 1 sticks, 2 slips"},
+      [self = friction.get(), f](const Snapshot& s) { return self->shown_phase(*s.evaluation, s.evaluation->friction[f]); });
   builder.add_friction(std::move(friction));
 }
 

@@ -37,9 +37,11 @@ public:
     return may_pull || mu_static > 1.0 ? normal_force(e) : sum_of_forces(e);
   }
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
-    if (mu_static == 0.0) return false; // holds nothing under any normal force
-    return std::any_of(contacts.begin(), contacts.end(),
-                       [&e](const ContactIndex& contact) { return e.mode[contact.unit] == k_contact_pressed; });
+    return mu_static != 0.0 && presses(e); // otherwise it holds nothing under any normal force
+  }
+  /// Returns the phase that the channel `mode` shows. Without friction, pressed bodies slip.
+  [[nodiscard]] double shown_phase(const Evaluation& e, const FrictionState& state) const {
+    return static_cast<double>(mu_static == 0.0 && presses(e) ? FrictionPhase::slip : state.phase);
   }
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double*, double* wrench) const override {
     wrench[0] = sliding_force(e, state);
@@ -100,6 +102,10 @@ public:
   }
 
 private:
+  [[nodiscard]] bool presses(const Evaluation& e) const {
+    return std::any_of(contacts.begin(), contacts.end(),
+                       [&e](const ContactIndex& contact) { return e.mode[contact.unit] == k_contact_pressed; });
+  }
   template <class S> [[nodiscard]] S sum_of_forces(const EvaluationData<S>& e) const {
     S sum{0.0};
     for (const ContactIndex& contact : contacts) sum += e.contact_force[contact.force];

@@ -118,7 +118,7 @@ void add_channels(SystemBuilder& builder, const CoulombFriction& friction) {
   builder.add_channel("slip_rate", "m/s", {"velocity of a's last contact point against b", "along b's tangent"},
                       [self, f](const Snapshot& s) { return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate; });
   builder.add_channel("mode", "", {"what the friction does", "", "0 free, 1 sticks, 2 slips"},
-                      [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
+                      [self, f](const Snapshot& s) { return self->shown_phase(*s.evaluation, s.evaluation->friction[f]); });
 }
 
 // Adds the channel of the slid distance from the reference pose.

@@ -412,7 +412,7 @@ void add_friction(const PolygonContact& e, const PolygonGroup::ElementData& entr
   builder.add_channel("slip_rate", "m/s", {"velocity of a against b along the touching face", "as friction"},
                       [self, f](const Snapshot& s) { return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate; });
   builder.add_channel("mode", "", {"what the friction does", "", "0 free, 1 sticks, 2 slips"},
-                      [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
+                      [self, f](const Snapshot& s) { return self->shown_phase(*s.evaluation, s.evaluation->friction[f]); });
   builder.add_friction(std::move(friction));
 }
 

@@ -19,7 +19,7 @@ public:
   bool is_tyre = false;
 
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState& state) const override {
-    return is_tyre ? mu_static != 0.0 && tyre_presses(e.mode[contacts.front().unit]) : CoulombFriction::is_loaded(e, state);
+    return is_tyre ? tyre_presses(e.mode[contacts.front().unit]) : CoulombFriction::is_loaded(e, state);
   }
 };
 
