@@ -23,6 +23,48 @@ constexpr double k_two_pi = 2.0 * std::numbers::pi;
 using Complex = std::complex<double>;
 using ComplexVector = Eigen::VectorXcd;
 
+// Rate of an inner state relative to the velocity of its element above which its force follows the motion. That of a tyre's tread at rest is
+// its deflection over the relaxation length, a term of second order.
+constexpr double k_felt = 1e-2;
+
+bool is_large(const System& system) { return 3 * (system.body_count() - 1) > k_max_modal_coordinates; }
+
+// Returns true if the force of the element follows its inner states.
+bool is_felt(const InnerJacobian& part) {
+  return (part.force * part.by_velocity).cwiseAbs().maxCoeff() > k_felt * part.force.cwiseAbs().maxCoeff();
+}
+
+// Returns true if the element has one inner state that relaxes by itself, as a spring and damper in series.
+bool relaxes(const InnerJacobian& part) { return part.count == 1 && part.by_inner(0, 0) < 0.0 && is_felt(part); }
+
+std::vector<InnerJacobian> inner_parts(const System& system, const Evaluation& evaluation) {
+  std::vector<InnerJacobian> parts;
+  for (const ForceGroup* group : system.inner_groups) group->add_inner_jacobian(evaluation, parts);
+  return parts;
+}
+
+// Adds the inner states that relax.
+void add_inner_states(const System& system, const Evaluation& evaluation, FreeVibration& v) {
+  std::vector<InnerJacobian> parts = inner_parts(system, evaluation);
+  std::erase_if(parts, [](const InnerJacobian& part) { return !relaxes(part); });
+  const auto m = static_cast<Eigen::Index>(parts.size());
+  if (m == 0) return;
+  MatX force = MatX::Zero(v.basis.rows(), m), drive = MatX::Zero(m, v.basis.rows());
+  v.inner_decay = VecX(m);
+  for (Eigen::Index i = 0; i < m; ++i) {
+    const InnerJacobian& part = parts[static_cast<std::size_t>(i)];
+    v.inner_decay[i] = part.by_inner(0, 0);
+    for (int end = 0; end < 2; ++end) {
+      const int body = end == 0 ? part.a : part.b;
+      if (body == k_ground) continue;
+      force.col(i).segment<3>(3 * body - 3) += part.force.col(0).segment<3>(3 * end);
+      drive.row(i).segment<3>(3 * body - 3) += part.by_velocity.row(0).segment<3>(3 * end);
+    }
+  }
+  v.inner_force = v.basis.transpose() * force;
+  v.inner_drive = drive * v.basis;
+}
+
 FreeVibration free_vibration(const System& system, State state) {
   Statics statics(system);
   statics.evaluate(state);
@@ -45,6 +87,7 @@ FreeVibration free_vibration(const System& system, State state) {
   v.a = v.basis.transpose() * stiffness * v.basis;
   v.b = v.basis.transpose() * statics.damping() * v.basis;
   const MatX size = stiffness.cwiseAbs();
+  add_inner_states(system, statics.evaluation(), v);
   v.separate_null_motions([&size](const MatX& shapes) { return MatX(size * shapes.cwiseAbs()); });
   return v;
 }
@@ -78,7 +121,8 @@ namespace {
 // Returns VibrationMode::residual of a mode.
 double residual_of(const FreeVibration& v, const FreeMode& mode) {
   const Complex square = mode.eigenvalue * mode.eigenvalue;
-  const ComplexVector left = square * mode.x - mode.eigenvalue * (v.b * mode.x) - v.a * mode.x;
+  ComplexVector left = square * mode.x - mode.eigenvalue * (v.b * mode.x) - v.a * mode.x;
+  if (v.inner_decay.size() > 0) left -= mode.eigenvalue * (v.relaxation(mode.eigenvalue) * mode.x);
   const double size = size_of(mode.eigenvalue);
   return left.norm() / (size * size * mode.x.norm());
 }
@@ -125,9 +169,6 @@ namespace {
 constexpr double k_at_kink = 1e-9;
 // Relative difference of stiffnesses and dampings below which two pieces of a law continue each other.
 constexpr double k_same_slope = 1e-9;
-// Rate of an inner state relative to the velocity of its element above which its force follows the motion. That of a tyre's tread at rest is
-// its deflection over the relaxation length, a term of second order.
-constexpr double k_felt = 1e-2;
 
 // Returns "'a', 'b' and 3 more".
 std::string list_of(const System& system, const std::vector<int>& elements) {
@@ -138,13 +179,11 @@ std::string list_of(const System& system, const std::vector<int>& elements) {
   return elements.size() > named ? text + " and " + std::to_string(elements.size() - named) + " more" : text;
 }
 
-// Returns the elements whose force changes with an inner state that changes with the motion.
-std::vector<int> following_inner_states(const System& system, const Evaluation& evaluation) {
+// Returns the elements whose force changes with an inner state that changes with the motion and that the modes hold.
+std::vector<int> held_inner_states(const System& system, const Evaluation& evaluation) {
   std::vector<int> elements;
-  std::vector<InnerJacobian> parts;
-  for (const ForceGroup* group : system.inner_groups) group->add_inner_jacobian(evaluation, parts);
-  for (const InnerJacobian& part : parts) {
-    if (!((part.force * part.by_velocity).cwiseAbs().maxCoeff() > k_felt * part.force.cwiseAbs().maxCoeff())) continue;
+  for (const InnerJacobian& part : inner_parts(system, evaluation)) {
+    if (!is_felt(part) || (!is_large(system) && relaxes(part))) continue;
     const int element = system.inner_elements[part.first];
     if (elements.empty() || elements.back() != element) elements.push_back(element);
   }
@@ -213,7 +252,7 @@ std::vector<std::string> remarks_on_modes(const System& system, const State& sta
   Statics statics(system);
   statics.evaluate(still);
   std::vector<std::string> remarks;
-  if (const std::vector<int> elements = following_inner_states(system, statics.evaluation()); !elements.empty())
+  if (const std::vector<int> elements = held_inner_states(system, statics.evaluation()); !elements.empty())
     remarks.push_back("the modes hold the inner state of " + list_of(system, elements) +
                       ", which changes with the motion: what that adds to stiffness and damping is left out");
   if (const std::vector<int> elements = at_kinks(system, still, statics.evaluation()); !elements.empty())
@@ -225,10 +264,9 @@ std::vector<std::string> remarks_on_modes(const System& system, const State& sta
 VibrationModes vibration_modes(const System& system, const State& state, WantedModes wanted, ModesAlgebra algebra) {
   VibrationModes found;
   if (system.body_count() <= 1) return found;
-  const bool is_large = 3 * (system.body_count() - 1) > k_max_modal_coordinates;
-  if ((is_large || algebra == ModesAlgebra::sparse || wanted.near) && wanted.count <= 0) wanted.count = k_usual_modes;
+  if ((is_large(system) || algebra == ModesAlgebra::sparse || wanted.near) && wanted.count <= 0) wanted.count = k_usual_modes;
   const OneThread alone;
-  const bool is_sparse = algebra == ModesAlgebra::sparse || (algebra == ModesAlgebra::by_size && is_large);
+  const bool is_sparse = algebra == ModesAlgebra::sparse || (algebra == ModesAlgebra::by_size && is_large(system));
   found = is_sparse ? some_modes(system, state, wanted) : all_modes(system, state);
   keep_wanted(wanted, found);
   return found;

@@ -487,9 +487,9 @@ TEST_CASE("what the modes leave out is said: inner states that are held, and kin
     return text;
   };
   CHECK(remarks("").empty());
-  // In series with a damper, a spring stiffens fast vibrations and damps slow ones.
-  CHECK(remarks("[[element]]\nkind = \"maxwell\"\nname = \"creep\"\na = \"mass\"\naxis = [0.0, 1.0]\nstiffness = 300.0\ndamping = 30.0\n")
-            .find("'creep'") != std::string::npos);
+  CHECK(remarks("[[state]]\nname = \"wear\"\nunit = \"m\"\nrate = \"mass.vy\"\n[[element]]\nkind = \"force\"\nname = \"servo\"\n"
+                "a = \"mass\"\ncoordinate = \"y\"\nformula = \"'-100 N/m' * wear\"\n")
+            .find("'wear'") != std::string::npos);
   const auto table = [&](const char* points) {
     return remarks(std::string("[[element]]\nkind = \"spring_damper\"\nname = \"bent\"\na = \"mass\"\naxis = [0.0, 1.0]\nforce_table = ") +
                    points + "\n");
@@ -497,4 +497,32 @@ TEST_CASE("what the modes leave out is said: inner states that are held, and kin
   CHECK(table("[[-0.1, -5.0], [0.0, 0.0], [0.1, 20.0]]").find("kink of 'bent'") != std::string::npos); // 50 N/m below, 200 N/m above
   CHECK(table("[[-0.1, -20.0], [0.0, 0.0], [0.1, 20.0]]").empty());                                    // one slope
   CHECK(table("[[-0.1, -5.0], [-0.01, 0.0], [0.1, 20.0]]").empty());                                   // 10 mm away
+}
+
+// A mass m on a spring k beside a spring k₁ in series with a damper c: with the force f of the latter, f' = k₁ v − (k₁/c) f, so that
+// (m λ² + k) (λ + k₁/c) + k₁ λ = 0.
+TEST_CASE("a spring and damper in series stiffens and damps") {
+  const auto creep = [](const std::string& name, double stiffness, double damping) {
+    return "[[element]]\nkind = \"maxwell\"\nname = \"" + name + "\"\na = \"mass\"\naxis = [0.0, 1.0]\nstiffness = " + exact(stiffness) +
+           "\ndamping = " + exact(damping) + "\n";
+  };
+  const auto left = [](std::complex<double> at, double k, double k1, double c) {
+    return std::abs((4.0 * at * at + k) * (at + k1 / c) + k1 * at) / std::abs(4.0 * at * at * at);
+  };
+  const std::string still = "gravity = [0.0, 0.0]\n";
+  const VibrationModes one = modes_of(still + k_guided_mass + creep("creep", 300.0, 30.0));
+  REQUIRE(one.modes.size() == 2); // one that oscillates, one that decays
+  for (const VibrationMode& mode : one.modes) CHECK(left(mode.eigenvalue, 400.0, 300.0, 30.0) < 1e-12);
+  CHECK(std::abs(one.modes[0].eigenvalue - one.modes[1].eigenvalue) > 1.0);
+  for (const VibrationMode& mode : one.modes) CHECK(mode.residual < 1e-12);
+  // Two halves side by side are one; that they relax against each other moves nothing.
+  const VibrationModes two = modes_of(still + k_guided_mass + creep("one", 150.0, 15.0) + creep("other", 150.0, 15.0));
+  REQUIRE(two.modes.size() == 2);
+  for (int i = 0; i < 2; ++i) CHECK(std::abs(two.modes[i].eigenvalue - one.modes[i].eigenvalue) < 1e-9 * std::abs(one.modes[i].eigenvalue));
+  // Without the spring, (m λ (λ + k₁/c) + k₁) λ = 0: it drifts where it was left.
+  const std::string alone = std::string(k_guided_mass).substr(0, std::string(k_guided_mass).find("[[element]]\nkind = \"spring_damper\""));
+  const VibrationModes loose = modes_of(still + alone + creep("creep", 300.0, 30.0));
+  CHECK(loose.rigid_motions == 1);
+  for (const VibrationMode& mode : loose.modes) CHECK(left(mode.eigenvalue, 0.0, 300.0, 30.0) < 1e-12);
+  REQUIRE(loose.modes.size() == 1); // the conjugate pair of 4 λ² + 40 λ + 300 = 0
 }
