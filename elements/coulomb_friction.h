@@ -61,22 +61,22 @@ public:
     } else {
       bound_events(e, wrench, event_value);
     }
-    event_value[2] = turn_to_other_foot<TapeNumber>(e, state, pressed_feet(e.mode));
+    event_value[2] = turn_to_other_foot<TapeNumber>(e, state, closed_feet(e.mode));
     return true;
   }
   [[nodiscard]] double contact_point_event(const Evaluation& e, const FrictionState& state) const override {
-    return turn_to_other_foot<double>(e, state, pressed_feet(e.mode));
+    return turn_to_other_foot<double>(e, state, closed_feet(e.mode));
   }
   void switch_contact_point(const Evaluation& e, FrictionState& state) const override {
     if (foot_contacts.empty()) return;
-    const PressedFeet pressed = pressed_feet(e.mode);
-    const bool was_rear = state.foot == pressed.rear, was_front = state.foot == pressed.front;
+    const ClosedFeet closed = closed_feet(e.mode);
+    const bool was_rear = state.foot == closed.rear, was_front = state.foot == closed.front;
     // A foot at an end gives way to the other end, whatever the rounding of the angle; any other foot to the end that the angle chooses.
-    const bool is_rear = was_rear != was_front ? was_front : turn_of<double>(e, pressed) >= 0.0;
-    state.foot = is_rear ? pressed.rear : pressed.front;
+    const bool is_rear = was_rear != was_front ? was_front : turn_of<double>(e, closed) >= 0.0;
+    state.foot = is_rear ? closed.rear : closed.front;
   }
   [[nodiscard]] bool is_foot_wrong(const Evaluation& e, const FrictionState& state) const override {
-    return !foot_contacts.empty() && turn_to_other_foot<double>(e, state, pressed_feet(e.mode)) < 0.0;
+    return !foot_contacts.empty() && turn_to_other_foot<double>(e, state, closed_feet(e.mode)) < 0.0;
   }
   // The slip rates of two feet differ by the relative angular velocity times their difference in height along the normal of the line. Feet
   // on one line are level when the angle changes the foot, so slip rate and force are continuous; only the slip acceleration jumps, by the
@@ -117,32 +117,36 @@ private:
   template <class S> void bound_events(const EvaluationData<S>& e, const S* wrench, S* event_value) const {
     steplap::bound_events<S>(mu_static * smooth_normal_force(e), wrench[0], event_value);
   }
-  // The rear-most and the front-most of the feet that are pressed; of all feet if none is.
-  struct PressedFeet {
+  // The rear-most and the front-most of the feet that are closed; of all feet if none is. A foot that is closed without force still counts:
+  // it is within the depth of the others, and is left at the angle at which both move alike.
+  struct ClosedFeet {
     std::uint32_t rear = 0, front = 0;
   };
-  [[nodiscard]] PressedFeet pressed_feet(const UnitMode* mode) const {
+  [[nodiscard]] ClosedFeet closed_feet(const UnitMode* mode) const {
     const auto count = static_cast<std::uint32_t>(foot_contacts.size());
-    const auto is_pressed = [&](std::uint32_t foot) { return mode[foot_contacts[foot].unit] == k_contact_pressed; };
-    PressedFeet pressed{0, count > 0 ? count - 1 : 0};
-    while (pressed.rear < count && !is_pressed(pressed.rear)) ++pressed.rear;
-    if (pressed.rear >= count) return {0, pressed.front};
-    while (!is_pressed(pressed.front)) --pressed.front;
-    return pressed;
+    const auto is_closed = [&](std::uint32_t foot) {
+      const UnitMode now = mode[foot_contacts[foot].unit];
+      return now == k_contact_pressed || now == k_contact_released;
+    };
+    ClosedFeet closed{0, count > 0 ? count - 1 : 0};
+    while (closed.rear < count && !is_closed(closed.rear)) ++closed.rear;
+    if (closed.rear >= count) return {0, closed.front};
+    while (!is_closed(closed.front)) --closed.front;
+    return closed;
   }
   // Returns by how much a is turned from the angle at which both feet touch, rad: the friction is at the rear foot while this is positive.
-  template <class S> [[nodiscard]] S turn_of(const EvaluationData<S>& e, const PressedFeet& pressed) const {
+  template <class S> [[nodiscard]] S turn_of(const EvaluationData<S>& e, const ClosedFeet& closed) const {
     const S turn = e.motion[feet[0].a].theta - e.motion[feet[0].b].theta;
-    const double level = levels[pressed.rear * feet.size() + pressed.front];
+    const double level = levels[closed.rear * feet.size() + closed.front];
     return level != 0.0 ? turn - S(level) : turn;
   }
   template <class S>
-  [[nodiscard]] S turn_to_other_foot(const EvaluationData<S>& e, const FrictionState& state, const PressedFeet& pressed) const {
+  [[nodiscard]] S turn_to_other_foot(const EvaluationData<S>& e, const FrictionState& state, const ClosedFeet& closed) const {
     if (foot_contacts.empty()) return S(1.0);
-    if (state.foot != pressed.rear && state.foot != pressed.front) return S(-1.0);
-    if (pressed.rear == pressed.front) return S(1.0);
-    const S turn = turn_of(e, pressed);
-    return k_foot_dead_band + (state.foot == pressed.rear ? turn : -turn);
+    if (state.foot != closed.rear && state.foot != closed.front) return S(-1.0);
+    if (closed.rear == closed.front) return S(1.0);
+    const S turn = turn_of(e, closed);
+    return k_foot_dead_band + (state.foot == closed.rear ? turn : -turn);
   }
 };
 
