@@ -17,7 +17,8 @@ constexpr double k_gap = 4e-15;
 constexpr int k_max_pivots_per_unknown = 60, k_max_pivots = 200;
 // Fraction of the largest capacity that replaces a capacity of zero.
 constexpr double k_least_capacity = 1e-13;
-// Capacities above k_unlimited are those of elements without bound. They are replaced by k_most_capacity times the largest bounded one.
+// Capacities above k_unlimited are those of elements without bound. They are replaced by k_most_capacity times the largest bounded one, or
+// times the load if that is larger.
 constexpr double k_unlimited = 1e20, k_most_capacity = 1e6;
 constexpr double k_tiny = 1e-30;
 // Weights of normals below this count as zero. The simplex basis is then degenerate.
@@ -93,8 +94,10 @@ void LeastUsage::share_by_capacity(const Gauges& gauges, const VecX& wrench) {
     }
   const Eigen::Index count = basis_.rows();
   scale_ = k_tiny;
-  for (const double capacity : capacity_.tail(2 * count))
-    if (capacity < k_unlimited) scale_ = std::max(scale_, capacity);
+  for (const double capacity : capacity_.tail(2 * count)) {
+    const double size = capacity < k_unlimited ? capacity : wrench.cwiseAbs().maxCoeff();
+    scale_ = std::max(scale_, size);
+  }
   for (Eigen::Index r = 0; r < count; ++r) {
     for (const Eigen::Index side : {count, 2 * count})
       capacity_[side + r] = length_[r] * std::max(std::min(capacity_[side + r], k_most_capacity * scale_), k_least_capacity * scale_);

@@ -213,6 +213,27 @@ TEST_CASE("two clutches side by side share a blow, and two that face each other 
   }
 }
 
+// No drag gives a capacity to compare with: what either clutch does not hold, the other holds without bound.
+TEST_CASE("two clutches that face each other stay locked under a torque that changes its sign") {
+  constexpr double k_turn = 6.0 * 3.14159265358979324; // rad/s of the torque, 10 N m
+  const std::string text = discs_text({{0.5, 0.0}, {2.0, 0.0}}) + clutch_text("one", {0, 1, false}) + clutch_text("other", {0, 1, true}) +
+                           signal_entry("sine", "sway", "amplitude = 10.0; frequency = 3.0") +
+                           element("load", "drive", "at = 'disc1'; torque = 'sway'");
+  for (const char* method : k_methods) {
+    CAPTURE(std::string(method));
+    const Run r = run(text, {method, 1e-10, 0.5, 0.01});
+    CHECK(r.event_times("one").empty());
+    CHECK(r.event_times("other").empty());
+    const std::vector<double> one = r.series("one.couple"), other = r.series("other.couple"), omega = r.series("disc0.omega");
+    for (std::size_t i = 0; i < r.times().size(); ++i) {
+      const double torque = 10.0 * std::sin(k_turn * r.times()[i]);
+      CHECK(std::abs(omega[i] - 10.0 / (2.5 * k_turn) * (1.0 - std::cos(k_turn * r.times()[i]))) < 1e-8);
+      CHECK(std::abs(one[i] - std::max(0.0, 0.2 * torque)) < 1e-9); // 0.5 of 2.5 kg m²: each carries its sign of the torque
+      CHECK(std::abs(other[i] - std::min(0.0, 0.2 * torque)) < 1e-9);
+    }
+  }
+}
+
 TEST_CASE("a clutch that an action closes while its bodies turn backwards joins them then") {
   const std::vector<Disc> discs{{2.0, 1.0}, {3.0, 5.0}};
   for (const char* method : k_methods)
