@@ -1,7 +1,7 @@
-// Checks units of signals. A signal may have any unit, but an element that uses it requires a certain one. The unit of a signal is known if
-// a value is given as text with a unit, "0.5 gravity", or if the file of a record states it; a plain number does not determine the unit. A sum or a scaled signal has the unit of
-// its parts, unless it has factors, which may change the unit. The unit of a product is unknown. A formula of parameters has the unit of
-// its result.
+// Checks units of signals. A signal may have any unit, but an element that uses it requires a certain one, that of its field: "" for a
+// factor, "*" for any. The unit of a signal is known if a value is given as text with a unit, "0.5 gravity", or if the file of a record
+// states it; a plain number does not determine the unit. A sum or a scaled signal has the unit of its parts, unless it has factors, which may
+// change the unit. The unit of a product is unknown. A formula of parameters has the unit of its result.
 #pragma once
 
 #include "mbd/io/field_reader.h"

@@ -80,7 +80,7 @@ inline const ElementKind& pusher_kind() {
     k.doc = "Pushes a body.";
     k.holds<Pusher>();
     k.fields.add("body", &Pusher::body).as(FieldType::body).required().doc("what it pushes");
-    k.fields.add("signal", &Pusher::signal).as(FieldType::signal).required().doc("force, N");
+    k.fields.add("signal", &Pusher::signal).as(FieldType::signal).in("*").required().doc("force, N");
     k.fields.add("against", &Pusher::against).as(FieldType::elements).doc("elements it works against");
     k.fields.add("offsets", &Pusher::offsets).in("m").doc("lever arms");
     return k;
