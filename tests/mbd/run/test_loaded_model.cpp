@@ -225,12 +225,14 @@ force_x = "f"
 TEST_CASE("a record is in the units of its header, and open if it ends within an event") {
   const fs::path folder = fs::temp_directory_path() / ("steplap_header_" + std::to_string(::getpid()));
   fs::create_directory(folder);
-  const auto impulse = [&](const std::string& rows, const std::string& fields = "", double* doubts = nullptr) {
+  const auto impulse = [&](const std::string& rows, const std::string& fields = "", double* doubts = nullptr,
+                           const std::string& force = "f") {
     std::ofstream(folder / "a.csv") << rows;
     const std::string text = "simulation.end = 1.0\n[[signal]]\nname = \"f\"\nkind = \"record\"\nfile = \"" + (folder / "a.csv").string() +
                              "\"\n" + fields +
                              "[[body]]\nname = \"m\"\nmass = 1.0\ninertia = 1.0\n[[element]]\nkind = \"load\"\nname = \"push\"\nat = "
-                             "\"m\"\nforce_x = \"f\"\n[[acceptance]]\nname = \"slow\"\nchannel = \"m.vx\"\nwithin = 1e3\n";
+                             "\"m\"\nforce_x = \"" +
+                             force + "\"\n[[acceptance]]\nname = \"slow\"\nchannel = \"m.vx\"\nwithin = 1e3\n";
     const Report report = judged_run(load_model_text(text, "record.toml"), {});
     if (doubts)
       *doubts = static_cast<double>(
@@ -242,7 +244,10 @@ TEST_CASE("a record is in the units of its header, and open if it ends within an
   CHECK(impulse("t,f" + rows) == doctest::Approx(0.2));
   CHECK(impulse("t [s],f [kN]" + rows) == doctest::Approx(200.0));
   CHECK(impulse("t [ms],f [N]" + thousand) == doctest::Approx(0.2));
-  CHECK(impulse("t [s],a [g]" + rows) == doctest::Approx(0.2 * 9.80665)); // of an acceleration, not grams
+  const std::string scaled = "[[signal]]\nname = \"times mass\"\nkind = \"scaled\"\nsignal = \"f\"\nfactor = 2.0\n";
+  CHECK(impulse("t [s],a [g]" + rows, scaled, nullptr, "times mass") == doctest::Approx(0.4 * 9.80665)); // of an acceleration, not grams
+  CHECK_THROWS_WITH_AS(impulse("t [s],a [g]" + rows), doctest::Contains("its signal 'f' is in gravity by the header of its file"),
+                       ModelError);
   CHECK(impulse("t,f" + rows, "unit = \"kN\"\n") == doctest::Approx(200.0));
   CHECK(impulse("t [s],f [kN]" + rows, "unit = \"kN\"\n") == doctest::Approx(200.0));
   CHECK_THROWS_WITH_AS(impulse("t [s],f [kN]" + rows, "unit = \"N\"\n"), doctest::Contains("but the column says [kN]"), ModelError);
