@@ -96,8 +96,8 @@ VecX balance(MatX& m) {
   return d;
 }
 
-// Refines an eigenvalue by Newton's method for (λ² − λ (B + R (λ − S)⁻¹ Q) − A) x = 0, that is, inverse iteration with a moving shift. The remaining error is
-// the rounding of the mode's own terms.
+// Refines an eigenvalue by Newton's method for (λ² − λ (B + R (λ − S)⁻¹ Q) − A) x = 0, that is, inverse iteration with a moving shift. The
+// remaining error is the rounding of the mode's own terms.
 void refine(const FreeVibration& v, Complex& value, ComplexVector& x) {
   const Eigen::Index r = v.a.cols();
   Complex at = value;

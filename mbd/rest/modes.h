@@ -5,8 +5,8 @@
 //   η'' = A η + B η',   A = Zᵀ K Z,   B = Zᵀ ∂Q/∂v Z   (free_vibration.h).
 // Dense algebra finds all modes of models with up to some hundred bodies. For larger ones, sparse algebra finds the slowest modes, or those
 // near a frequency, in a small subspace (sparse_modes.h). Dense algebra includes inner states that relax, those of springs and dampers in
-// series; all others are held. Assumptions: drives hold their coordinates (a moving or accelerating base counts
-// as held, which Equilibrium reports), closed contacts stay closed, and sticking joints stick, because amplitudes are small.
+// series; all others are held. Assumptions: drives hold their coordinates (a moving or accelerating base counts as held, which Equilibrium
+// reports), closed contacts stay closed, and sticking joints stick, because amplitudes are small.
 #pragma once
 
 #include "mbd/base/portable_math.h"

@@ -4,7 +4,6 @@
 #include "mbd/base/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/base/stop.h"
-#include "mbd/rest/equilibrium.h"
 #include "mbd/run/body_reach.h"
 #include "mbd/run/quantity_text.h"
 #include "mbd/run/range_index.h"
@@ -182,18 +181,21 @@ bool forbids_slips(const Model& model, const std::string& element) {
 } // namespace
 
 std::vector<Finding> start_slides(const LoadedModel& loaded) {
-  const Model& model = loaded.model;
-  const System& system = *loaded.system;
   const auto may_slip = [](const FrictionUnit& unit) { return !unit.friction->never_slips(); };
-  if (model.simulation.initial != "equilibrium" || std::none_of(system.frictions.begin(), system.frictions.end(), may_slip)) return {};
-  Equilibrium rest;
+  const std::vector<FrictionUnit>& frictions = loaded.system->frictions;
+  if (loaded.model.simulation.initial != "equilibrium" || std::none_of(frictions.begin(), frictions.end(), may_slip)) return {};
   try {
-    rest = equilibrium_of(loaded);
+    return start_slides(loaded, equilibrium_of(loaded));
   } catch (const RunStopped&) {
     throw;
   } catch (const NumericalFailure&) { // the run reports it
     return {};
   }
+}
+
+std::vector<Finding> start_slides(const LoadedModel& loaded, const Equilibrium& rest) {
+  const Model& model = loaded.model;
+  const System& system = *loaded.system;
   std::vector<Finding> findings;
   const auto add = [&](int f, const char* how) {
     const std::string& name = system.element_names[system.frictions[f].element];

@@ -2,6 +2,7 @@
 // which they began.
 #pragma once
 
+#include "mbd/rest/equilibrium.h"
 #include "mbd/run/findings.h"
 #include "mbd/trust/judgement.h"
 
@@ -10,7 +11,9 @@ namespace steplap {
 /// Returns a note if the run began in equilibrium and a body moved by more than 0.01 of its size or 0.05 rad to reach it.
 [[nodiscard]] std::vector<Finding> distant_rest_findings(const LoadedModel& loaded, const RunResult& result);
 /// Returns a finding for each friction element that slid in the search for the equilibrium in which the run begins: a warning if a criterion
-/// forbids its slips, because no event reports this one, otherwise a note. Searches again; returns nothing if there is no equilibrium.
+/// forbids its slips, because no event reports this one, otherwise a note.
+[[nodiscard]] std::vector<Finding> start_slides(const LoadedModel& loaded, const Equilibrium& rest);
+/// The same before a run: searches for the equilibrium. Returns nothing if there is none.
 [[nodiscard]] std::vector<Finding> start_slides(const LoadedModel& loaded);
 /// Returns a note for each criterion whose limit, given without a unit, is a thousand times larger than the largest value of its channel
 /// and larger than all values of that unit in the run: its unit may be wrong.

@@ -95,7 +95,8 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
   for (const Finding& finding : findings_after(loaded, result)) add_finding(report, finding, options);
   if (!options.start) {
     for (const Finding& finding : distant_rest_findings(loaded, result)) add_finding(report, finding, options);
-    for (const Finding& finding : start_slides(loaded)) add_finding(report, finding, options);
+    if (report.run.rest)
+      for (const Finding& finding : start_slides(loaded, *report.run.rest)) add_finding(report, finding, options);
   }
   for (const Event& event : result.events) ++report.event_counts[words_of(event.kind)];
   const RunStatistics& s = result.statistics;

@@ -39,8 +39,10 @@ Run run_model(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& op
   };
   // Running extremes are read for criteria only. They are up to 128 copies of the ranges of all channels, which large scenes do not have room for.
   simulation_asked.has_growth = options.has_extremes && is_judged(loaded->model);
-  Simulation simulation(*loaded->system, options.start ? *options.start : initial_state_of(*loaded), std::move(simulation_asked));
   Run run;
+  if (!options.start && loaded->model.simulation.initial == "equilibrium") run.rest = equilibrium_of(*loaded);
+  const State start = options.start ? *options.start : run.rest ? run.rest->state : initial_state_of(*loaded);
+  Simulation simulation(*loaded->system, start, std::move(simulation_asked));
   try {
     simulation.run();
   } catch (const NumericalFailure& failure) {

@@ -1,6 +1,7 @@
 // Runs a loaded model to its end, or until it fails.
 #pragma once
 
+#include "mbd/rest/equilibrium.h"
 #include "mbd/run/failure.h"
 #include "mbd/run/loaded_model.h"
 #include "mbd/run/run_options.h"
@@ -13,6 +14,7 @@ struct Run {
   std::shared_ptr<const LoadedModel> loaded; ///< never nullptr
   RunResult result;                          ///< results up to the failure, if there was one
   std::optional<Failure> failure;            ///< reason for an early end; empty if the run reached its end
+  std::optional<Equilibrium> rest;           ///< equilibrium in which the run began, if it was searched for
 };
 
 /// Returns the options of a simulation with the settings of the model. Precondition: the settings of `options` have been applied to the
