@@ -178,6 +178,31 @@ std::optional<std::vector<Vec2>> closed_turn(std::vector<Vec2> points) {
   return points;
 }
 
+// Returns why the smooth curve is not the one meant by the points, "" if it may be. Between two points it may leave their range by half of the
+// whole lift, and in a dwell, three points of equal lift or more, by a tenth.
+std::string swings_between(const std::vector<Vec2>& points, const LiftCurve& curve) {
+  constexpr double k_most = 0.5, k_most_in_dwell = 0.1;
+  constexpr int k_parts = 16;
+  const auto by_lift = [](const Vec2& x, const Vec2& y) { return x.y() < y.y(); };
+  const auto [lowest, highest] = std::minmax_element(points.begin(), points.end(), by_lift);
+  const double whole = highest->y() - lowest->y();
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Vec2 &from = points[i - 1], &to = points[i];
+    const bool is_dwell =
+        from.y() == to.y() && ((i > 1 && points[i - 2].y() == from.y()) || (i + 1 < points.size() && points[i + 1].y() == to.y()));
+    double most = 0.0;
+    for (int k = 1; k < k_parts; ++k) {
+      const double lift = curve.at(from.x() + (to.x() - from.x()) * k / k_parts).value;
+      most = std::max({most, lift - std::max(from.y(), to.y()), std::min(from.y(), to.y()) - lift});
+    }
+    if (most > (is_dwell ? k_most_in_dwell : k_most) * whole)
+      return "the smooth curve through 'lift' leaves its points by " + rounded_text(most, 2) + " m between [" + rounded_text(from.x()) +
+             ", " + rounded_text(from.y()) + "] and [" + rounded_text(to.x()) + ", " + rounded_text(to.y()) +
+             "]: add points there, as close together as those next to them";
+  }
+  return "";
+}
+
 // Returns the lift curve; nothing after an error.
 std::optional<LiftCurve> curve_of(const Cam& e, SystemBuilder& builder) {
   const auto fail = [&](const std::string& message) -> std::optional<LiftCurve> {
@@ -208,9 +233,14 @@ std::optional<LiftCurve> curve_of(const Cam& e, SystemBuilder& builder) {
                 rounded_text(e.lift.front().y()) + " m");
   const double span = e.lift.back().x() - e.lift.front().x(), turn = 2.0 * std::numbers::pi;
   if (span > 6.2831853072) return fail("'lift' spans more than a whole turn");
-  if (LiftCurve::is_whole_turn(e.lift)) return LiftCurve(e.lift);
+  const auto through = [&](const std::vector<Vec2>& points) -> std::optional<LiftCurve> {
+    LiftCurve curve(points);
+    if (const std::string swings = swings_between(points, curve); !swings.empty()) return fail(swings);
+    return curve;
+  };
+  if (LiftCurve::is_whole_turn(e.lift)) return through(e.lift);
   const std::optional<std::vector<Vec2>> closed = closed_turn(e.lift);
-  if (closed) return LiftCurve(*closed);
+  if (closed) return through(*closed);
   return fail("'lift' spans " + rounded_text(span * 360.0 / turn, 4) + " degrees of a turn, from " + rounded_text(e.lift.front().x()) +
               " to " + rounded_text(e.lift.back().x()) + " rad only. Add points up to [" + rounded_text(e.lift.front().x() + turn, 12) +
               ", " + rounded_text(e.lift.front().y()) +

@@ -175,5 +175,9 @@ TEST_CASE("what is wrong with a cam is told") {
   CHECK(complaint("cam = 'shaft'; lift = [[0.0, 0.0], [2.0943951, 0.1], [4.1887902, 0.2]]") ==
         "nothing");                                                                            // even: the first point comes next
   CHECK(complaint("cam = 'shaft'; lift = [[0.0, 0.0], [2.5, 0.1], [5.0, 0.0]]") == "nothing"); // ends as it begins, 1.28 rad before that
+  // Across a dwell of 3 rad the smooth curve goes on as the bump of 0.1 rad ends.
+  says("cam = 'shaft'; lift = [[0.0, 0.0], [3.0, 0.0], [3.01, 0.0], [3.02, 5e-4], [3.03, 1e-3], [3.04, 5e-4], [3.05, 0.0], [3.06, 0.0], "
+       "[4.0, 0.0], [6.283185307179586, 0.0]]",
+       "the smooth curve through 'lift' leaves its points");
   says("cam = 'shaft'; axis = [0.0, 0.0]; formula = \"'1 mm' * sin(value)\"", "no direction");
 }
