@@ -57,11 +57,15 @@ RunResult run_within(const System& system, const State& initial, const Simulatio
   return std::move(simulation).result();
 }
 
-bool is_finite(const RunResult& run) {
+bool is_finite(const System& system, const RunResult& run) {
   const Trajectory& t = *run.trajectory;
+  std::set<std::string> bodies;
+  for (const BodyData& body : system.bodies) bodies.insert(body.name);
   for (std::size_t c = 0; c < t.channels().size(); ++c) {
-    const std::string& unit = t.channels()[c]->unit;
-    if (unit != "m/s" && unit != "rad/s" && unit != "N" && unit != "N m") continue; // other channels may be infinite by definition
+    const Channel& channel = *t.channels()[c];
+    const bool is_force = channel.unit == "N" || channel.unit == "N m", is_rate = channel.unit == "m/s" || channel.unit == "rad/s";
+    // Other channels may be infinite by definition, or without value, as the slip rate of an element that was released.
+    if (!is_force && !(is_rate && bodies.contains(channel.name.substr(0, channel.name.rfind('.'))))) continue;
     for (std::size_t row = 0; row < t.size(); ++row)
       if (!std::isfinite(t.value(row, c))) return false;
   }
@@ -135,8 +139,8 @@ private:
     std::vector<Method> sound;
     for (Method& method : methods_) {
       const CrossRun& r = check_.runs[method.run];
-      bool is_number = is_finite(r.result);
-      for (const RunResult& coarser : method.coarser) is_number = is_number && is_finite(coarser);
+      bool is_number = is_finite(system_, r.result);
+      for (const RunResult& coarser : method.coarser) is_number = is_number && is_finite(system_, coarser);
       if (is_number) sound.push_back(std::move(method));
       else note({DisagreementKind::not_a_number, r.setting.integrator, "", "", 0.0, INFINITY, "the result is no number"});
     }

@@ -160,8 +160,14 @@ Passing random_cam(RandomNumber& own) {
   const double rate = own.decades(0.0, 2.477), lobe = own.between(0.17, 1.6), top = own.between(1.0, 5.0), height = own.between(1e-3, 0.02);
   const double start = own.between(0.0, top - 0.5 * lobe - 0.05), gap = height * own.between(0.01, 0.9);
   std::vector<Vec2> lift{{0.0, 0.0}};
+  const auto dwell_to = [&lift, lobe](double end) { // points so close that the smooth curve hardly swings between them
+    const double from = lift.back().x(), parts = std::ceil((end - from) / (0.25 * lobe));
+    for (double k = 1.0; k < parts; ++k) lift.emplace_back(from + (end - from) * k / parts, 0.0);
+  };
+  dwell_to(top - 0.5 * lobe);
   for (const double share : {-0.5, -0.3, -0.15, 0.0, 0.15, 0.3, 0.5})
     lift.emplace_back(top + share * lobe, height * std::pow(std::cos(std::numbers::pi * share), 2));
+  dwell_to(k_turn);
   lift.emplace_back(k_turn, 0.0);
   const LiftCurve curve(lift);
   Passing passing;
