@@ -340,8 +340,9 @@ private:
     state_ = rest;
     // A body that slid away did not stand, even if it came to rest somewhere.
     if (const double way = slid ? std::abs(row_value(slid->friction()) - slid->from()) : 0.0; way > k_stands * length_)
-      throw ElementFailure(std::string(none.what()) + ". It does not stand as given; released and strongly damped, it comes to rest after " +
-                               rounded(way) + " m of sliding",
+      throw ElementFailure(std::string(none.what()) +
+                               ". It does not stand as given; released and strongly damped, it comes to rest after " + rounded(way) +
+                               " m of sliding",
                            none.elements());
     result_ = {};
     slips_.clear();

@@ -29,7 +29,7 @@ struct VoyageSummary {
   double slid = 0.0;                                             ///< largest slide of a joint, summed over events, m
   double overlap_left = 1.0;                                     ///< smallest remaining overlap of a joint, as a fraction
   bool slips = false, lifts = false, comes_apart = false;
-  bool moves = false; ///< true if any friction slid, any contact opened, or anything broke
+  bool moves = false;                 ///< true if any friction slid, any contact opened, or anything broke
   LimitsSummary limits, known_limits; ///< `known_limits` excludes limits that are assumed (assumed_limits.h)
   double planes_use = 0.0;            ///< largest combined utilisation of a friction shared by two planes
   /// verdict on the slide of shared frictions: inspect if it exceeds a limit or is only an upper bound, open if there is no limit

@@ -268,7 +268,7 @@ TEST_CASE("a record is in the units of its header, and open if it ends within an
   CHECK(doubts == 0.0);
   (void)impulse("t,f\n0,2\n0.1,0\n", "", &doubts); // anything: a spring that is let go
   CHECK(doubts == 0.0);
-  (void)impulse("t,a [g]\n0,2\n0.1,0\n", "", &doubts); // an acceleration began before it was measured
+  (void)impulse("t,a [g]\n0,2\n0.1,0\n", scaled, &doubts, "times mass"); // an acceleration began before it was measured
   CHECK(doubts == 1.0);
   fs::remove_all(folder);
 }
