@@ -87,12 +87,15 @@ const Signal* SignalNetwork::build(Item& item) {
   try {
     bool is_complete = true;
     std::vector<const Signal*> parts;
-    if (kind.combine)
-      for (const std::string& name : parts_of(kind.fields, &definition)) {
-        parts.push_back(build(name));
-        is_complete = is_complete && parts.back();
-      }
+    const std::vector<std::string> names = kind.combine ? parts_of(kind.fields, &definition) : std::vector<std::string>();
+    for (const std::string& name : names) {
+      parts.push_back(build(name));
+      is_complete = is_complete && parts.back();
+    }
     if (is_complete) item.signal = kind.combine ? kind.combine(*completed(items_, *item.entry), parts) : kind.build(definition);
+    // A delay is not taken into account: with it a doubt may be raised too early.
+    for (std::size_t k = 0; k < names.size() && is_complete; ++k)
+      for (const Signal::Doubt& doubt : parts[k]->doubts()) item.signal.add_doubt(doubt.t, "in '" + names[k] + "', " + doubt.text);
     item.status = is_complete ? Status::built : Status::failed;
   } catch (const std::exception& error) {
     item.status = Status::failed;
