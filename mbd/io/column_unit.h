@@ -26,6 +26,9 @@ struct ColumnUnit {
 /// parentheses.
 [[nodiscard]] UnitConversion conversion_of(const CsvTable& table, std::size_t column, const ColumnUnit& unit);
 
+/// Returns the unit in brackets in the header of a column, as parse_quantity() reads it; "" if there is none. [g] as in conversion_of().
+[[nodiscard]] std::string unit_in_header(const CsvTable& table, std::size_t column, const std::string& wanted);
+
 /// Returns the unit in brackets in the header of a column of a file, as conversion_of() takes it for any unit; "" if there is none, if it is
 /// unknown, or if there is no such column. Throws ModelError if the unit database is missing.
 [[nodiscard]] std::string unit_in_file(const std::string& path, const std::string& column);

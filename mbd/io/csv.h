@@ -62,8 +62,7 @@ private:
   std::vector<Field> last_; ///< fields of the previous row; empty before the first
 };
 
-/// Returns the text as a CSV field: in quotes if it contains a comma, a quote, a line break, or # that would begin a
-/// comment.
+/// Returns the text as a CSV field: in quotes if it contains a comma, a quote, a line break, or a # that would begin a comment.
 [[nodiscard]] std::string csv_field(const std::string& text);
 
 } // namespace steplap

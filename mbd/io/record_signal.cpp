@@ -33,9 +33,8 @@ double unit_factor(const Record& record, const std::string& key, const std::stri
 }
 
 bool is_acceleration(const Record& record, const CsvTable& table, std::size_t column) {
-  const std::string in_header = table.units.empty() ? std::string() : table.units[column];
-  const std::string& unit = record.unit.empty() ? in_header : record.unit;
-  return unit == "g" || unit == "G" || (!unit.empty() && parse_quantity("1 " + unit, "m/s^2").problem.empty());
+  const std::string unit = record.unit.empty() ? unit_in_header(table, column, "m/s^2") : record.unit;
+  return !unit.empty() && parse_quantity("1 " + unit, "m/s^2").problem.empty();
 }
 
 void check_ascending(const CsvTable& table, const std::vector<double>& times) {

@@ -186,7 +186,7 @@ TEST_CASE("files are whole or absent") {
   write_file(path, "two", IfExists::replace);
   CHECK(content(path) == "two");
   CHECK(files_in(folder) == 1);
-  // What a link names is replaced, not the link, and permissions stay.
+  // The target of a link is replaced; the link and the permissions remain.
   const fs::path link = folder / "link.csv";
   fs::create_symlink(path, link);
   fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);

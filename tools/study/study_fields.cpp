@@ -46,7 +46,9 @@ FieldTable variable_fields(const std::string& unit) {
   t.add("location", &Variable::location).in(unit).doc("shift of a lognormal, Weibull or exponential distribution, mode of a Gumbel's");
   t.add("lower", &Variable::lower).in(unit).doc("the distribution is truncated below");
   t.add("upper", &Variable::upper).in(unit).doc("the distribution is truncated above");
-  t.add("measured", &Variable::measured).as(FieldType::file).doc("CSV file of measurements, in SI, that the distribution is fitted to");
+  t.add("measured", &Variable::measured)
+      .as(FieldType::file)
+      .doc("CSV file of measurements that the distribution is fitted to, in the unit in brackets in its header, or SI");
   t.add("column", &Variable::column).doc("its column, by name or number");
   t.add("value", &Variable::value)
       .in(unit)
@@ -102,7 +104,7 @@ FieldTable history_fields() {
   t.add("file", &History::file).required().as(FieldType::file).doc("CSV file of the record");
   t.add("time", &History::time).doc("column of the times, by name or number");
   t.add("column", &History::column).doc("column of the measured values, by name or number");
-  t.add("unit", &History::unit).doc("of the measured values; the channel's if not given");
+  t.add("unit", &History::unit).doc("of the measured values; if not given that in brackets in the header, or the channel's");
   t.add("time_unit", &History::time_unit).doc("of the times; if not given that in brackets in the header, or s");
   t.add("from", &History::from).in("s").not_negative().doc("earlier rows are left out");
   t.add("to", &History::to).in("s").not_negative().doc("later rows are left out");

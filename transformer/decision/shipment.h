@@ -14,7 +14,7 @@
 
 namespace steplap::assess {
 
-/// A recorder that travelled with the machine; all values are printed as given.
+/// A recorder that travelled with the machine. All values are printed as given; `range` is also that of the records, if it is a number.
 struct ShippedRecorder {
   std::string serial, record, calibrated, range, filter, place;
 };

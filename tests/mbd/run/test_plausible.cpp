@@ -345,7 +345,7 @@ TEST_CASE("a pulse that jumps exactly at the start of a run from rest is told, s
   CHECK(later.judgement.verdict == Verdict::inspect);
   CHECK_FALSE(found(before.findings, "pulse_at_rest"));
   CHECK(before.judgement.verdict == Verdict::hold);
-  // What is continuous at the start, and what is no pulse, acts at rest as it did.
+  // A load that is continuous at the start, or that is no pulse, acts at rest without a finding.
   for (const std::string& signal :
        {pulse("trapezoid", step + "rise = 0.1\nfall = 0.1\n"), pulse("half_sine", step), pulse("constant", "value = 10.0\n")})
     CHECK_FALSE(found(run_of(mass(signal)).findings, "pulse_at_rest"));

@@ -107,7 +107,7 @@ TEST_CASE("departure and arrival of the papers are the voyage, of which the shar
     std::string papers = k_papers;
     return papers.replace(papers.find("16 g"), 4, range);
   };
-  CHECK(run(of_range("±1 g"), "") == 12);
+  CHECK(run(of_range("± 1 g"), "") == 12);
   CHECK(run(of_range("±1 g"), "--range '16 g'") == 2);   // said twice
   CHECK(run(of_range("16 g"), "--range 156.9064") == 2); // m/s² without a unit are g
   CHECK(run(of_range("see the label"), "") == 0);

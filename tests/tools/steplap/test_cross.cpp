@@ -45,3 +45,15 @@ TEST_CASE("check --cross trusts nothing where no two runs end, and asks for a ti
   CHECK(steplap_does({"check", "--cross", "--cpu-limit", "soon", model}).code == 2);
   CHECK(steplap_does({"check", "--cross", "nowhere.toml"}).code == 3);
 }
+
+// A formula with two switches of one quantity that starts exactly at zero stops all methods that choose their steps.
+TEST_CASE("check --cross does not trust a minority of methods that reach the end") {
+  const Workbench bench;
+  const std::string model =
+      bench.write("kink.toml", "format = 1\ngravity = [0.0, 0.0]\n[simulation]\nend = 1.0\n[[body]]\nname = 'a'\nmass = 2.0\n"
+                               "inertia = 1.0\nvelocity = [1.0, 0.0]\n[[element]]\nkind = 'force'\nname = 'f'\na = 'a'\n"
+                               "coordinate = 'x'\nformula = \"-'3 N/m'*(value>'0 m' ? 1 : -1)*abs(value)\"\n");
+  const Outcome outcome = steplap_does({"check", "--cross", model});
+  CHECK(outcome.code == 4);
+  CHECK(has(outcome.out, "kink: NOT TO BE TRUSTED: only 2 of 6 methods reach the end"));
+}

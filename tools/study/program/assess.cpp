@@ -82,7 +82,7 @@ void take_range(const std::string& file, AssessmentOptions& options) {
       if (text.starts_with(sign)) text.erase(0, sign.size());
     const std::size_t number = text.find_first_not_of(' ');
     if (number == std::string::npos || std::string("0123456789.").find(text[number]) == std::string::npos) continue;
-    const double stated = acceleration_of(text, "--shipment: 'range'");
+    const double stated = acceleration_of(text.substr(number), "--shipment: 'range'");
     constexpr double k_same = 1e-6; // two spellings of one range
     if (range && std::abs(*range - stated) > k_same * stated)
       throw UsageError("--shipment: '" + file + "' says that the sensor reads up to " + recorder.range + ", " +
