@@ -8,6 +8,7 @@
 // coordinates in absolute coordinates are numbered first, then those of each mechanism.
 #pragma once
 
+#include "mbd/dynamics/evaluation_choices.h"
 #include "mbd/dynamics/load_sharing.h"
 #include "mbd/dynamics/mechanism.h"
 #include "mbd/dynamics/schur.h"
@@ -21,9 +22,6 @@
 namespace steplap {
 
 class StageProgram;
-
-/// Type of coordinates for islands that allow both; `automatic`: joint coordinates where they are cheaper.
-enum class Coordinates : unsigned char { automatic, joint, absolute };
 
 /// Bodies that move as one. The coordinates of the cluster are those of the common centre of gravity.
 struct Cluster {

@@ -6,6 +6,7 @@
 // positions). A stage that violates one of them is evaluated without code.
 #pragma once
 
+#include "mbd/dynamics/evaluation_choices.h"
 #include "mbd/dynamics/traced_evaluation.h"
 #include "mbd/tape/code_store.h"
 
@@ -18,13 +19,6 @@ namespace steplap {
 /// Relative pivot below which stages are evaluated without code. If the smallest pivot of a step (Dynamics::least_pivot) is below 2e-2,
 /// integrators need its value, and stages by code do not compute it.
 inline constexpr double k_traced_pivot = 2.5e-2;
-
-/// Use of machine code for stages. The results are bit-identical in all cases.
-enum class StageCode : std::uint8_t {
-  never,
-  when_it_pays, ///< after a set of modes has persisted for so long that code would have repaid its compilation
-  at_once,      ///< from the second stage on
-};
 
 /// Results of an evaluation without code, for comparison.
 struct StageFound {

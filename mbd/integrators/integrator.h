@@ -7,6 +7,7 @@
 
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/integrators/event_nodes.h"
+#include "mbd/integrators/integrator_settings.h"
 #include "mbd/integrators/rate_rounding.h"
 #include "mbd/integrators/singular_crossing.h"
 #include "mbd/integrators/turn_limit.h"
@@ -19,17 +20,6 @@
 #include <vector>
 
 namespace steplap {
-
-/// Settings of a method.
-struct IntegratorSettings {
-  double tolerance = 1e-8; ///< relative local error of adaptive methods
-  double step = 0.0;       ///< length of fixed steps, s; first step of adaptive methods
-  double max_step = 0.0;   ///< largest step, s; 0: no limit
-  double projection_tolerance = 1e-12;
-  /// Number of parts into which each step is divided in a finer run. All limits of the step length (breakpoints, harmonics, forces after
-  /// an event, end of a slip) apply to the undivided step. Fixed steps are planned with length division × step and then divided.
-  int division = 1;
-};
 
 class Integrator {
 public:
@@ -110,12 +100,6 @@ public:
   [[nodiscard]] double rate_accuracy(const Dynamics& dynamics) const;
   /// Returns the accuracy of positions, m, and angles, rad, in the last step.
   [[nodiscard]] double place_accuracy(const Dynamics& dynamics) const;
-  /// Statistics of fixed steps that were divided because bodies turned too far.
-  struct DividedSteps {
-    long count = 0;
-    double shortest = std::numeric_limits<double>::infinity(); ///< shortest of these steps, s
-    int a = k_ground, b = k_ground;                            ///< pair of bodies with the fastest relative rotation
-  };
   [[nodiscard]] const DividedSteps& divided_steps() const { return divided_; }
   /// Returns the relative local error to which steps were controlled where rounding is larger than the tolerance, the largest; 0: nowhere.
   [[nodiscard]] double rounded_tolerance() const { return rounded_tolerance_; }

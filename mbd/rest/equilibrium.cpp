@@ -4,6 +4,7 @@
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/events/blow.h"
 #include "mbd/rest/admissible_rest.h"
+#include "mbd/rest/descent.h"
 #include "mbd/rest/indifference.h"
 #include "mbd/rest/ramped_rest.h"
 #include "mbd/rest/settling.h"

@@ -10,7 +10,8 @@
 // this is one of many, and depends on the path.
 #pragma once
 
-#include "mbd/rest/descent.h"
+#include "mbd/rest/motion_part.h"
+#include "mbd/system/system.h"
 
 #include <string>
 #include <vector>

@@ -6,6 +6,7 @@
 // that of eigenvalues.
 #pragma once
 
+#include "mbd/rest/motion_part.h"
 #include "mbd/rest/tangent.h"
 
 #include <functional>
@@ -15,14 +16,7 @@
 
 namespace steplap {
 
-/// Largest component of a motion: coordinate 0, 1, 2 (x, y, θ) of a body, and its sign.
-struct MotionPart {
-  int body = 0, coordinate = 0;
-  double sign = 1.0;
-};
 [[nodiscard]] MotionPart largest_part(const VecX& scaled);
-
-enum class RestAlgebra { by_size, dense, sparse };
 
 class Landscape {
 public:

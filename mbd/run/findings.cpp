@@ -399,7 +399,7 @@ std::vector<Finding> findings_before(const LoadedModel& loaded) {
 
 // Returns a note if steps were divided because a body rotated too far within one step. All legs of a run have the bodies of the
 // model in the same order.
-static std::optional<Finding> divided_steps(const LoadedModel& loaded, const Integrator::DividedSteps& divided) {
+static std::optional<Finding> divided_steps(const LoadedModel& loaded, const DividedSteps& divided) {
   if (divided.count == 0) return std::nullopt;
   const auto name = [&](int body) {
     return body == k_ground ? "the ground" : "'" + loaded.system->bodies[static_cast<std::size_t>(body)].name + "'";

@@ -11,6 +11,7 @@
 #include "mbd/simulation/action_triggers.h"
 #include "mbd/simulation/changeover.h"
 #include "mbd/simulation/energy_account.h"
+#include "mbd/simulation/extremes.h"
 #include "mbd/simulation/formula_search.h"
 #include "mbd/simulation/power_ledger.h"
 #include "mbd/simulation/run_record.h"

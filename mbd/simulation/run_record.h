@@ -1,9 +1,11 @@
 // Options and results of a run.
 #pragma once
 
+#include "mbd/dynamics/evaluation_choices.h"
 #include "mbd/events/event.h"
-#include "mbd/integrators/integrator.h"
-#include "mbd/simulation/extremes.h"
+#include "mbd/integrators/integrator_settings.h"
+#include "mbd/simulation/channel_range.h"
+#include "mbd/simulation/face_travel.h"
 #include "mbd/simulation/trajectory.h"
 
 #include <functional>
@@ -54,7 +56,7 @@ struct RunStatistics {
   double energy_rounding = 0.0;                                ///< rounding error of the energies, J
   double dissipated = 0.0, work = 0.0;                         ///< dissipated energy and work, J
   std::optional<double> passed_pulse;        ///< time, s, at which time stepping averaged a load much shorter than its step; empty: none
-  Integrator::DividedSteps divided_steps;    ///< fixed steps that were divided because of large rotations
+  DividedSteps divided_steps;                ///< fixed steps that were divided because of large rotations
   double rounded_tolerance = 0.0;            ///< relative local error of steps where rounding is larger than the tolerance; 0: nowhere
   std::optional<double> undecided_condition; ///< time, s, at which the condition of an action may have been true for a moment; empty: none
   double cpu_seconds = 0.0;                  ///< CPU time of this thread, s, including samples

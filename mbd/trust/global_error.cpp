@@ -2,7 +2,9 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/dynamics/dynamics.h"
 #include "mbd/model/method.h"
+#include "mbd/simulation/extremes.h"
 #include "mbd/system/formula_channel.h"
 #include "mbd/trust/event_match.h"
 #include "mbd/trust/reference_runs.h"

@@ -1,6 +1,7 @@
 // The models of models/machines, as a user runs them.
 #pragma once
 
+#include "mbd/dynamics/dynamics.h"
 #include "mbd/run/run.h"
 #include "transformer/program.h"
 

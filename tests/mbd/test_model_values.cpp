@@ -2,6 +2,7 @@
 // values, side by side.
 #include "elements/load.h"
 #include "elements/spring_damper.h"
+#include "mbd/dynamics/dynamics.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/model_building.h"

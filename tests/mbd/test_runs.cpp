@@ -1,5 +1,6 @@
 // Runs as such: the same twice, side by side on one system, and nothing of friction or contact in scenes
 // that have none.
+#include "mbd/dynamics/dynamics.h"
 #include "tests/physics/paper_runs.h"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,5 @@
 // Forces by formula against closed forms, against the built-in elements that they can imitate, and against each other by several methods.
+#include "mbd/dynamics/dynamics.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 

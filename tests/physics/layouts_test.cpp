@@ -1,5 +1,6 @@
 // The layouts of models/layouts: they rest as they stand, momentum and energy balance, a load in the other
 // direction gives the mirrored motion, and what comes out is of the size that a hand calculation gives.
+#include "mbd/dynamics/dynamics.h"
 #include "mbd/rest/equilibrium.h"
 #include "tests/physics/scene.h"
 

@@ -1,5 +1,6 @@
 // Orders of convergence on a smooth constrained problem, steps held equal: a double pendulum of a pinned
 // body and a rod, with a driven pivot, springs and dampers.
+#include "mbd/integrators/integrator.h"
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>

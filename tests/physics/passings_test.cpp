@@ -1,6 +1,7 @@
 // Bodies in even rotation and even flight touch what they pass, however long the steps are that the motion alone would allow. Random scenes
 // of each kind of element with an event function have a first event that is known in closed form.
 #include "elements/machinery/lift_curve.h"
+#include "mbd/system/turn_table.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 #include "tests/random/random_number.h"

@@ -1,4 +1,5 @@
 // Ropes: slack and taut, over pulleys, against closed forms.
+#include "mbd/dynamics/dynamics.h"
 #include "mbd/rest/equilibrium.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"

@@ -7,6 +7,7 @@
 //     dynamics             two threads evaluate one Dynamics
 //     system               one thread writes a number into a System that another one runs
 //     once                 a flag without a lock guards what the first thread to come fills in
+#include "mbd/dynamics/dynamics.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/system/instance.h"

@@ -2,6 +2,7 @@
 #include "elements/step_lap/step_lap_assessment.h"
 #include "elements/step_lap/step_lap_joint.h"
 #include "mbd/io/reader.h"
+#include "mbd/simulation/extremes.h"
 #include "mbd/simulation/simulation.h"
 #include "transformer/catalog.h"
 

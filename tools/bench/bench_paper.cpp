@@ -2,6 +2,7 @@
 // with springs only are measured, too; the difference is the cost of contacts, friction and constraints.
 //
 // Benchmarks are named scene/quantity/…, so that results of the two scenes can be divided.
+#include "mbd/dynamics/dynamics.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/system/instance.h"

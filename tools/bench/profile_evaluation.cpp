@@ -2,6 +2,7 @@
 // at a given time.
 //
 //   profile_evaluation MODEL TIME COUNT [COORDINATES]
+#include "mbd/dynamics/dynamics.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "transformer/catalog.h"

@@ -2,6 +2,7 @@
 // evaluation with and without machine code. Prints the minimum of many batches.
 //
 //   profile_tape MODEL TIME
+#include "mbd/dynamics/dynamics.h"
 #include "mbd/dynamics/traced_evaluation.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"

@@ -1,6 +1,7 @@
 // Edges of core sheets that bear on each other, against closed forms of a Winkler bed and a sum over the line.
 #include "elements/step_lap/step_lap_assessment.h"
 #include "elements/step_lap/step_lap_edges.h"
+#include "mbd/dynamics/dynamics.h"
 #include "tests/elements/step_lap/step_lap_scene.h"
 
 #include <doctest/doctest.h>
