@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Text around the checksum of the text before it, the last entry of the summary.
+// Text around the checksum of the text before it, the last entry of a file.
 constexpr std::string_view k_before_checksum = ",\n  \"checksum\": \"", k_after_checksum = "\"\n}\n";
 
 Json inputs_json(const std::vector<InputFile>& inputs) {
@@ -486,7 +486,12 @@ std::string summary_json(const Report& report, const FileRecords& files) {
   return text;
 }
 
-std::string_view checked_summary(std::string_view text) {
+std::string with_checksum(std::string_view json) {
+  const std::string content(json.substr(0, json.size() - std::string_view("\n}\n").size()));
+  return content + std::string(k_before_checksum) + sha256(content) + std::string(k_after_checksum);
+}
+
+std::string_view checked_content(std::string_view text) {
   constexpr std::size_t k_digits = 64;
   const std::size_t tail = k_before_checksum.size() + k_digits + k_after_checksum.size();
   if (text.size() < tail) return {};

@@ -48,8 +48,10 @@ using FileRecords = std::vector<FileRecord>;
 void write_summary(const Report& report, const FileRecords& files, const FileSink& put);
 /// Returns the text of summary.json.
 [[nodiscard]] std::string summary_json(const Report& report, const FileRecords& files);
-/// Returns the part of a summary before its checksum; empty if the checksum is missing or wrong.
-[[nodiscard]] std::string_view checked_summary(std::string_view text);
+/// Returns the text of a JSON object, which ends with "\n}\n", with the SHA-256 of the text before as its last entry.
+[[nodiscard]] std::string with_checksum(std::string_view json);
+/// Returns the part of such a text before its checksum; empty if the checksum is missing or wrong.
+[[nodiscard]] std::string_view checked_content(std::string_view text);
 /// Returns the files in the order of writing; the last one lists the others. They refer to `report`, which must outlive them.
 [[nodiscard]] std::vector<ResultFile> result_files(const Report& report);
 

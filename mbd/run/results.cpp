@@ -160,7 +160,7 @@ std::string digest_of(const fs::path& file) {
 
 // Checks the summary's own digest and the digests of all other files.
 void check_files(const fs::path& file, const std::string& summary, const std::string& prefix) {
-  const std::string_view content = checked_summary(summary);
+  const std::string_view content = checked_content(summary);
   if (content.empty()) changed(file, "its checksum is not that of its text, or is missing");
   const OrderedJson json = parse_ordered(std::string(content) + "}");
   for (const char* const name : {"trajectory.csv", "events.csv", "model.toml", "drawing.json"}) {

@@ -2,6 +2,7 @@
 #include "mbd/model/completion.h"
 #include "mbd/run/drawing.h"
 #include "mbd/run/ordered_json.h"
+#include "mbd/run/result_files.h"
 #include "mbd/run/version.h"
 #include "tools/assess/assessment.h"
 #include "transformer/core/left_out_of_cores.h"
@@ -362,7 +363,7 @@ std::string assessment_json(const Assessment& a) {
                        {"sha256", sha256(a.criteria.toml)},
                        {"text", a.criteria.text},
                        {"source", a.criteria.source}}}};
-  return json.dump(1) + "\n";
+  return with_checksum(json.dump(1) + "\n");
 }
 
 } // namespace steplap::assess

@@ -1,6 +1,7 @@
 #include "tools/assess/static_json.h"
 
 #include "mbd/run/ordered_json.h"
+#include "mbd/run/result_files.h"
 
 #include <cmath>
 #include <numbers>
@@ -123,7 +124,7 @@ OrderedJson proof_json(const StaticProof& proof, const std::string& sha256) {
 std::string static_json(const std::vector<StaticProof>& proofs, const std::vector<std::string>& sha256) {
   OrderedJson json = {{"static_proofs", OrderedJson::array()}};
   for (std::size_t i = 0; i < proofs.size(); ++i) json["static_proofs"].push_back(proof_json(proofs[i], sha256[i]));
-  return json.dump(1) + "\n";
+  return with_checksum(json.dump(1) + "\n");
 }
 
 } // namespace steplap::assess

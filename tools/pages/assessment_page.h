@@ -10,8 +10,7 @@ namespace steplap {
 /// Returns true if the folder contains assessment.json or static.json.
 [[nodiscard]] bool is_assessment(const std::string& folder);
 
-/// Returns the content of both files for a page. Throws FileError if a file was not written by `steplap assess`, or if its decision is less
-/// severe than one of its own reasons.
+/// Returns the content of both files for a page. Throws FileError if a file is not as `steplap assess` wrote it.
 [[nodiscard]] OrderedJson assessment_data(const std::string& folder);
 /// Returns a self-contained HTML file. Its first printed sheet is one A4 page with room for two signatures. Throws as assessment_data().
 [[nodiscard]] std::string assessment_page(const std::string& folder);
