@@ -338,6 +338,7 @@ std::string ParametersReader::text_of(const Node& node) const {
 
 Parameters ParametersReader::parameters(const Node& root, const Model& model) const {
   Parameters result = parameters_;
+  if (found_.empty()) return result;
   // Whether a field can be set by path is determined once for all entries of a kind, because finding an entry by its name is slow in large
   // models.
   std::unordered_map<std::string, bool> settable;

@@ -265,6 +265,9 @@ std::string Reader::read_name(const Node& entry, const std::string& noun, std::v
 }
 
 template <class Kind> const Kind* Reader::read_kind(const Node& entry, const std::string& noun, const std::vector<const Kind*>& kinds) {
+  const Node* name = entry.find("kind");
+  if (name && name->type == Node::Type::text)
+    if (const Kind* kind = find_kind(kinds, name->text())) return kind;
   std::vector<std::string> known;
   std::string list;
   for (const Kind* kind : kinds) {
@@ -272,13 +275,10 @@ template <class Kind> const Kind* Reader::read_kind(const Node& entry, const std
     list += (list.empty() ? "'" : ", '") + kind->name + "'";
   }
   const std::string subject = subject_text(noun, entry_name(entry));
-  const Node* name = entry.find("kind");
   if (!name) {
     add(entry.where(), subject + " needs 'kind', one of " + list);
   } else if (name->type != Node::Type::text) {
     add(name->where(), "'kind' of " + subject + ": expected a string, got " + name->type_name());
-  } else if (const Kind* kind = find_kind(kinds, name->text())) {
-    return kind;
   } else {
     std::string hint = did_you_mean(name->text(), known);
     if (hint.empty()) hint = "; known are " + list;
