@@ -15,6 +15,9 @@ void check(const LoadCase& one) {
   if (one.source.empty()) fail("source", "'source' is empty: name the document that requires the load, with its edition");
   if (one.criteria.empty() && one.places.contains("criteria"))
     fail("criteria", "'criteria' is empty, so nothing would be judged: leave it out to apply all criteria");
+  const auto sets_case = [](const std::string& change) { return change.starts_with("case."); };
+  if (std::any_of(one.changes.begin(), one.changes.end(), sets_case))
+    fail("set", "'set' changes a load case, which the run of a case does not read: give the value in the case itself");
   const auto sets_gravity = [](const std::string& change) { return change.starts_with("gravity"); };
   if (one.pull && std::any_of(one.changes.begin(), one.changes.end(), sets_gravity))
     fail("pull", "'pull' is added to the gravity of the model, which 'set' replaces: give one of them");

@@ -1,10 +1,12 @@
 #include "mbd/io/possible_events.h"
 
+#include "mbd/base/diagnostics.h"
 #include "mbd/base/name_pattern.h"
 #include "mbd/model/action.h"
 
 #include <algorithm>
 #include <unordered_set>
+#include <vector>
 
 namespace steplap {
 
@@ -43,6 +45,20 @@ EventKinds events_of(const System& system, const std::string& element) {
   return kinds;
 }
 
+std::vector<std::string> words_of(const EventKinds& kinds) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < kinds.size(); ++i)
+    if (kinds.test(i)) words.emplace_back(words_of(static_cast<EventKind>(i)));
+  std::sort(words.begin(), words.end());
+  return words;
+}
+
+std::string list_of(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "'" : ", '") + word + "'";
+  return text;
+}
+
 } // namespace
 
 EventKinds possible_events(const Model& model, const System& system, const std::string& element) {
@@ -66,6 +82,15 @@ EventKinds possible_events(const Model& model, const System& system, const std::
   }
   kinds.reset(static_cast<std::size_t>(EventKind::none));
   return kinds;
+}
+
+std::string why_no_event(const Model& model, const System& system, const std::string& element, const std::string& event) {
+  const EventKinds kinds = possible_events(model, system, element.empty() ? "*" : element);
+  if ((kinds & event_kinds_matching(event)).any()) return "";
+  const std::vector<std::string> words = words_of(kinds);
+  const std::string whose = element.empty() ? "of the model" : "of '" + element + "'";
+  if (words.empty()) return "nothing " + whose + " has events";
+  return "no event " + whose + " is called '" + event + "'" + did_you_mean(event, words) + "; there are " + list_of(words);
 }
 
 } // namespace steplap

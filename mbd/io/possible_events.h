@@ -12,4 +12,8 @@ namespace steplap {
 /// active from the start. Precondition: `model` is completed, and `system` is compiled from it.
 [[nodiscard]] EventKinds possible_events(const Model& model, const System& system, const std::string& element);
 
+/// Returns why no element that matches the pattern `element` (empty: any) can have an event that matches the pattern `event`; empty if one
+/// can. Preconditions as above.
+[[nodiscard]] std::string why_no_event(const Model& model, const System& system, const std::string& element, const std::string& event);
+
 } // namespace steplap

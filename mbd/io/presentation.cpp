@@ -62,20 +62,6 @@ Quantity read_limit(const std::string& text, const std::string& unit) {
   return bare;
 }
 
-std::vector<std::string> words_of(const EventKinds& kinds) {
-  std::vector<std::string> words;
-  for (std::size_t i = 0; i < kinds.size(); ++i)
-    if (kinds.test(i)) words.emplace_back(words_of(static_cast<EventKind>(i)));
-  std::sort(words.begin(), words.end());
-  return words;
-}
-
-std::string list_of(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "'" : ", '") + word + "'";
-  return text;
-}
-
 // Checks names and patterns against the channels and events of the system.
 class PresentationCheck {
 public:
@@ -177,25 +163,15 @@ private:
     check_event(c);
   }
 
-  // Returns an error if no element that matches `element` can have an event that matches `event`; otherwise "".
-  std::string no_event(const std::string& element, const std::string& event) const {
-    const EventKinds kinds = possible_events(model_, system_, element.empty() ? "*" : element);
-    if ((kinds & event_kinds_matching(event)).any()) return "";
-    const std::vector<std::string> words = words_of(kinds);
-    const std::string whose = element.empty() ? "of the model" : "of '" + element + "'";
-    if (words.empty()) return "nothing " + whose + " has events";
-    return "no event " + whose + " is called '" + event + "'" + did_you_mean(event, words) + "; there are " + list_of(words);
-  }
-
   void check_event(const Criterion& c) {
-    if (const std::string problem = no_event(c.element, c.event); !problem.empty()) complain(c, "event", problem);
+    if (const std::string problem = why_no_event(model_, system_, c.element, c.event); !problem.empty()) complain(c, "event", problem);
   }
 
   // Reports an action that waits for an event which its element cannot have.
   void check_action(const Action& action) {
     const auto event = event_text(action.when);
     if (!event) return;
-    const std::string problem = no_event(event->element, words_of(event->kind));
+    const std::string problem = why_no_event(model_, system_, event->element, words_of(event->kind));
     if (!problem.empty()) problems_.push_back({action.place("when"), "action '" + action.name + "': 'when': " + problem});
   }
 

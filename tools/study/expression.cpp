@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace steplap::study {
@@ -77,8 +79,12 @@ Expression& Expression::operator=(Expression&&) noexcept = default;
 Expression::~Expression() = default;
 
 double Expression::operator()(const double* values) const {
-  for (const auto& used : parser_->used) used->value = values[used->index];
-  return parser_->parser.Eval();
+  bool is_known = true; // the parser's min, max and comparisons would choose a known value beside an unknown one
+  for (const auto& used : parser_->used) {
+    used->value = values[used->index];
+    is_known = is_known && !std::isnan(used->value);
+  }
+  return is_known ? parser_->parser.Eval() : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::string name_problem(const std::string& name) {

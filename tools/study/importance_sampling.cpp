@@ -120,11 +120,15 @@ private:
     return true;
   }
 
+  // Failures and survivals, with runs without a result as the study counts them.
+  [[nodiscard]] const WeightedMean& failures() const { return course_.counts_bad() ? sums_.fails_or_bad : sums_.fails; }
+  [[nodiscard]] const WeightedMean& survivals() const { return course_.counts_bad() ? sums_.holds : sums_.holds_or_bad; }
+
   // Returns true if the probability of survival has the smaller standard deviation. Both outcomes must have occurred often enough for an
   // estimate of their scatter.
   [[nodiscard]] bool holds_better() const {
     constexpr long k_enough = 20;
-    return std::min(sums_.holds.hits(), sums_.fails.hits()) >= k_enough && sums_.holds.deviation() < sums_.fails.deviation();
+    return std::min(survivals().hits(), failures().hits()) >= k_enough && survivals().deviation() < failures().deviation();
   }
 
   void set() {
@@ -135,8 +139,8 @@ private:
 
   void judge() {
     constexpr double k_uneven = 0.1;
-    const WeightedMean& counted = is_complement_ ? sums_.holds : sums_.fails;
-    if (sums_.fails.hits() == 0) {
+    const WeightedMean& counted = is_complement_ ? survivals() : failures();
+    if (failures().hits() == 0) {
       e_.status = "no failure was met around the design points";
       e_.is_trusted = false;
     } else if (counted.largest_share() > k_uneven) {

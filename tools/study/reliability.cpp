@@ -197,6 +197,7 @@ private:
     if (status.empty()) status = sampling_doubt(probability, "first order");
     if (!status.empty() && !has_trusted_estimate()) answer_.degrade(Standing::not_trusted);
     check_surrogate(first, probability);
+    check_regions(first);
     add("form", "beta", first.beta, status);
     add("form", "probability", probability, status);
     report_factors("form", "factor", probability);
@@ -225,6 +226,20 @@ private:
                   e.test(run_.study().failed).high, probability));
       answer_.degrade(Standing::not_trusted);
     }
+  }
+
+  // A failure far nearer than the design point, from which no search arrived at another one, lies in a region that sampling around design
+  // points and levels may have missed. Crude Monte Carlo meets every region by its probability.
+  void check_regions(const DesignPoint& first) {
+    constexpr double k_more = 10.0; // ratio of the first-order probabilities
+    const double nearest = limit_.nearest_failure();
+    const bool is_far_nearer = nearest < first.beta && normal_cdf(-nearest) > k_more * normal_cdf(-first.beta);
+    const auto is_crude = [](const Estimate& e) { return e.method == "monte_carlo" && e.is_trusted; };
+    if (!first.is_found || !is_far_nearer || std::any_of(estimates_.begin(), estimates_.end(), is_crude)) return;
+    answer_.notes.push_back(text_of("A sample failed at a distance of %.4g, and the nearest design point lies at %.4g: a region of failure "
+                                    "may be missing. Add \"monte_carlo\" to the methods",
+                                    nearest, first.beta));
+    answer_.degrade(Standing::not_trusted);
   }
 
   void report_sorm(const DesignPoint& first) {

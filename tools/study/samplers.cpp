@@ -45,8 +45,8 @@ Estimate monte_carlo(LimitFunction& limit, const SamplingTarget& target) {
   }
   course.say_why_it_ended(e);
   const std::string all = std::to_string(e.samples) + " samples: only a bound is known";
-  if (failures == 0.0) e.status = "no failure among " + all;
-  if (failures + bad == total && bad == 0.0) e.status = "only failures among " + all;
+  if (failures + (course.counts_bad() ? bad : 0.0) == 0.0) e.status = "no failure among " + all;
+  if (failures + bad == total && (bad == 0.0 || course.counts_bad())) e.status = "only failures among " + all;
   return e;
 }
 

@@ -13,8 +13,9 @@ Share share_of(const WeightedMean& mean, bool is_complement, const SamplingTarge
 }
 
 SamplingCourse::SamplingCourse(LimitFunction& limit, const SamplingTarget& target)
-    : limit_(limit), target_(target), block_(static_cast<std::size_t>(std::clamp(target.samples / 50, 100L, 10000L))),
-      before_(limit.asked()), begin_(limit.run().evaluator.seconds()) {}
+    : limit_(limit), target_(target), counts_bad_(limit.run().study().failed == "unsafe"),
+      block_(static_cast<std::size_t>(std::clamp(target.samples / 50, 100L, 10000L))), before_(limit.asked()),
+      begin_(limit.run().evaluator.seconds()) {}
 
 bool SamplingCourse::is_late() {
   is_late_ = target_.seconds && limit_.run().evaluator.seconds() - begin_ > *target_.seconds;
@@ -28,8 +29,9 @@ void SamplingCourse::set(Estimate& e, const Share& safe, const Share& unsafe) co
   e.unsafe_interval = unsafe.interval;
   e.safe_test = safe.test;
   e.unsafe_test = unsafe.test;
-  const double rarer = std::min(safe.p, 1.0 - safe.p);
-  e.cov = rarer > 0.0 ? safe.deviation / rarer : std::numeric_limits<double>::infinity();
+  const Share& asked = counts_bad_ ? unsafe : safe;
+  const double rarer = std::min(asked.p, 1.0 - asked.p);
+  e.cov = rarer > 0.0 ? asked.deviation / rarer : std::numeric_limits<double>::infinity();
   e.samples = used();
 }
 

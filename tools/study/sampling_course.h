@@ -19,6 +19,8 @@ class SamplingCourse {
 public:
   SamplingCourse(LimitFunction& limit, const SamplingTarget& target);
 
+  /// Returns true if runs without a result count as failures.
+  [[nodiscard]] bool counts_bad() const { return counts_bad_; }
   /// Returns true if the limit on samples or on time is reached.
   [[nodiscard]] bool is_over() { return is_late() || left() <= 0; }
   [[nodiscard]] bool is_late();
@@ -28,7 +30,8 @@ public:
   /// Returns the number of samples per batch. It depends on the study only.
   [[nodiscard]] std::size_t block() const { return block_; }
 
-  /// Sets both bounds of `e` and their coefficient of variation, which refers to failure or survival, whichever is less probable.
+  /// Sets both bounds of `e` and their coefficient of variation, which refers to failure or survival, whichever is less probable,
+  /// and counts runs without a result as the study asks.
   void set(Estimate& e, const Share& safe, const Share& unsafe) const;
   /// Stores an intermediate estimate. The samples still needed are predicted from cov ∝ 1/√n.
   void note(Estimate& e);
@@ -39,6 +42,7 @@ public:
 private:
   LimitFunction& limit_;
   const SamplingTarget& target_;
+  bool counts_bad_; ///< runs without a result count as failures
   std::size_t block_;
   long before_;
   double begin_;

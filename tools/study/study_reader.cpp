@@ -5,6 +5,7 @@
 #include "mbd/base/number_text.h"
 #include "mbd/io/document.h"
 #include "mbd/io/field_reader.h"
+#include "mbd/io/possible_events.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/read_input.h"
 #include "mbd/io/reader.h"
@@ -331,19 +332,14 @@ private:
     const std::string subject = "response '" + r.name + "'";
     if (r.measure == Measure::first_event) r.unit = "s";
     if (r.event.empty()) return add(r.where, subject + " needs 'event'");
-    if (event_kinds_matching(r.event).none()) {
-      std::vector<std::string> words;
-      for (std::size_t k = 1; k < k_event_kinds; ++k) words.emplace_back(words_of(static_cast<EventKind>(k)));
-      add(entry.find("event")->where(),
-          "no kind of event matches '" + r.event + "'" + did_you_mean(r.event, words) + "; there are " + list_text(words));
-    }
-    if (r.element.empty()) return;
-    const auto& names = model.system->element_names;
-    if (std::none_of(names.begin(), names.end(), [&](const std::string& name) { return matches_pattern(name, r.element); }))
-      add(entry.find("element")->where(),
-          "no element of model '" + model.name + "' matches '" + r.element + "'" + did_you_mean(r.element, names));
     if (r.measure == Measure::event_count && entry.find("otherwise"))
       add(entry.find("otherwise")->where_key(), "'otherwise' is for 'time_of_first'");
+    const auto& names = model.system->element_names;
+    if (!r.element.empty() && std::none_of(names.begin(), names.end(), [&](const auto& name) { return matches_pattern(name, r.element); }))
+      return add(entry.find("element")->where(),
+                 "no element of model '" + model.name + "' matches '" + r.element + "'" + did_you_mean(r.element, names));
+    if (const std::string problem = why_no_event(completed(model.given), *model.system, r.element, r.event); !problem.empty())
+      add(entry.find("event")->where(), subject + ": " + problem);
   }
 
   static bool is_on_request(const Response& r, const StudyModel& model) {

@@ -193,6 +193,7 @@ TEST_CASE("wrong cases are refused, each with file and line") {
       {k_hanging + load_case("a", "criteria = [\"farce\"]"), "criteria =", "did you mean 'force'"},
       {k_hanging + load_case("a", "criteria = []"), "criteria =", "nothing would be judged"},
       {k_hanging + load_case("a", "pull = [0, 1]\nset = [\"gravity.1=-1\"]"), "pull =", "give one of them"},
+      {k_hanging + load_case("a", "set = [\"case.a.pull=[0, 1]\"]"), "set =", "changes a load case"},
       {k_hanging + "[[case]]\nname = \"a\"\n", "[[case]]", "needs 'source'"},
       {no_limits + load_case("a", ""), "[[case]]", "has no criteria"},
       {k_hanging, "", "has no load cases"},
