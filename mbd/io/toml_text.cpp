@@ -113,8 +113,7 @@ public:
     while (at_ < text_.size()) {
       const char c = text_[at_];
       if (c == '#') skip_to("\n");
-      else if (starts("\"\"\"") || starts("'''")) skip_quoted(3);
-      else if (c == '"' || c == '\'') skip_quoted(1);
+      else if (c == '"' || c == '\'') skip_quoted(starts("\"\"\"") || starts("'''") ? 3 : 1);
       else {
         if (c == '\n') start_line();
         if (c == '.') count();
