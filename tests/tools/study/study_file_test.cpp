@@ -56,7 +56,7 @@ TEST_CASE("mistakes are told with file, line and what was probably meant") {
       {head + k_variable + "[[response]]\nname = \"n\"\nwhat = \"count\"\nevent = \"slip\"\n",
        "response 'n': no event of the model is called 'slip' (did you mean 'slips'?)"},
       {head + k_variable + "[[response]]\nname = \"n\"\nwhat = \"count\"\nevent = \"slips\"\nelement = \"tank bottom\"\n",
-       "response 'n': no event of 'tank bottom' is called 'slips' (did you mean"},
+       "response 'n': no event of 'tank bottom' is called 'slips'; there are 'loses"},
       {head + k_variable + "[[response]]\nname = \"m\"\nexpression = \"2*nu\"\n",
        "'nu' in the expression '2*nu' is not known (did you mean 'mu'?)"},
       {head + k_variable + "[[limit_state]]\nname = \"g\"\nexpression = \"1 - (mu\"\n", "the expression '1 - (mu' is wrong"},
