@@ -33,19 +33,18 @@ std::string constants_problem(const SpringDamper& e) {
 }
 
 // Checks the fields; `free` and `table` are the names of the fields in messages.
-bool check(const SpringDamper& e, SystemBuilder& builder, const std::string& free = "'free_length'",
-           const std::string& table = "'force_table'") {
-  const auto fails = [&builder](bool is_wrong, const std::string& message) {
-    if (is_wrong) builder.error(message);
+bool check(const SpringDamper& e, SystemBuilder& builder, const char* free = "'free_length'", const char* table = "'force_table'") {
+  const auto fails = [&builder](bool is_wrong, const auto&... parts) { // a message is composed only where it is needed
+    if (is_wrong) builder.error((std::string() + ... + parts));
     return is_wrong;
   };
   bool is_bad = refuses_across(builder, e.axis.has_value(), e.across);
   const std::string problem = constants_problem(e);
   if (fails(!problem.empty(), problem)) return false;
   const SpringConstants constants = constants_of(e);
-  is_bad |= fails(e.preload && e.free_length, "give either 'preload' or " + free + ", not both");
+  is_bad |= fails(e.preload && e.free_length, "give either 'preload' or ", free, ", not both");
   is_bad |= fails(e.preload && *e.preload != 0.0 && constants.k == 0.0, "'preload' needs a 'stiffness'");
-  is_bad |= fails(!e.force_table.empty() && e.stiffness != 0.0, "give either 'stiffness' or " + table + ", not both");
+  is_bad |= fails(!e.force_table.empty() && e.stiffness != 0.0, "give either 'stiffness' or ", table, ", not both");
   is_bad |= fails(!e.damping_table.empty() && e.damping != 0.0, "give either 'damping' or 'damping_table', not both");
   is_bad |= fails(e.force_table.size() == 1 || e.damping_table.size() == 1, "a table needs at least two points");
   is_bad |=
@@ -55,7 +54,7 @@ bool check(const SpringDamper& e, SystemBuilder& builder, const std::string& fre
   is_bad |= fails(std::max(e.force_table.size(), e.damping_table.size()) > PiecewiseLinear::k_most_points,
                   "a table may have at most 65536 points");
   is_bad |= fails(e.between != "lines" && e.force_table.empty() && e.damping_table.empty(),
-                  "'between' says how the points of a table are joined: give " + table + " or 'damping_table'");
+                  "'between' says how the points of a table are joined: give ", table, " or 'damping_table'");
   is_bad |= fails(constants.k == 0.0 && constants.c == 0.0 && e.force_table.empty() && e.damping_table.empty(),
                   "gives no force: set 'stiffness', 'damping' or a table");
   return !is_bad;

@@ -338,9 +338,11 @@ std::string without_line_ends(std::string text) {
 }
 
 void find_control_characters(const Node& node, std::vector<Diagnostic>& problems) {
-  const bool has_lines = node.key == "source" && !has_control_character(without_line_ends(node.text()));
+  const auto is_allowed = [&node](const std::string& text) {
+    return !has_control_character(text) || (node.key == "source" && !has_control_character(without_line_ends(text)));
+  };
   if (has_control_character(node.key)) problems.push_back({node.where_key(), "the key '" + node.key + "' holds a control character"});
-  else if (node.type == Node::Type::text && has_control_character(node.text()) && !has_lines)
+  else if (node.type == Node::Type::text && !is_allowed(std::get<std::string>(node.scalar)))
     problems.push_back({node.where(), (node.key.empty() ? "the text" : "'" + node.key + "',") + std::string(" '") + node.text() +
                                           "', holds a control character (a line break, a tab or the like): write it without"});
   for (const Node& child : node.children) find_control_characters(child, problems);

@@ -162,6 +162,10 @@ private:
   const TableReading& reading_;
 };
 
+bool is_known(const std::string& key, const TableReading& reading) {
+  return reading.knows_all_keys || std::find(reading.known_keys.begin(), reading.known_keys.end(), key) != reading.known_keys.end();
+}
+
 // Reports an unknown key. Returns the most similar known key; "" if none is similar.
 std::string report_unknown(const Node& child, const FieldTable& fields, const TableReading& reading, std::vector<Diagnostic>& problems) {
   std::vector<std::string> known = reading.known_keys;
@@ -197,7 +201,7 @@ GivenField read_field(const Node& child, const FieldTable& fields, const Field& 
 const Field* renamed_field(const Node& table, const Node& child, const FieldTable& fields, const TableReading& reading,
                            std::vector<Diagnostic>& problems) {
   const Field* const field = fields.find_earlier(child.key);
-  if (!field || std::find(reading.known_keys.begin(), reading.known_keys.end(), child.key) != reading.known_keys.end()) return nullptr;
+  if (!field || is_known(child.key, reading)) return nullptr;
   if (table.find(field->name)) {
     problems.push_back({child.where_key(), "'" + child.key + "' of " + reading.subject + " is the earlier name of '" + field->name +
                                                "', which is given as well: leave '" + child.key + "' out"});
@@ -256,8 +260,7 @@ std::vector<GivenField> read_fields(const Node& table, const FieldTable& fields,
     if (!field) field = renamed_field(table, child, fields, reading, problems);
     if (field && depends_on_other_fields(*field)) later.emplace_back(&child, field);
     else if (field) given.push_back(read_field(child, fields, *field, object, reading, problems));
-    else if (!fields.find_earlier(child.key) &&
-             std::find(reading.known_keys.begin(), reading.known_keys.end(), child.key) == reading.known_keys.end())
+    else if (!is_known(child.key, reading) && !fields.find_earlier(child.key))
       misspelt.push_back(report_unknown(child, fields, reading, problems));
   }
   for (const auto& [child, field] : later) given.push_back(read_field(*child, fields, *field, object, reading, problems));

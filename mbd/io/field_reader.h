@@ -22,6 +22,7 @@ struct GivenField {
 struct TableReading {
   std::string subject;                          ///< name of the object in messages: "body 'tank'"
   std::vector<std::string> known_keys;          ///< keys that the caller reads: "name", "kind"
+  bool knows_all_keys = false;                  ///< every key belongs to a field or is reported by another reading of the table
   std::function<bool(const Field&)> is_excused; ///< returns true for required fields that may be missing here
   /// Creates a marker from an inline table { body, point | at, angle } and returns its name.
   std::function<std::string(const Node& table, const Field& field)> add_marker;

@@ -314,6 +314,9 @@ void Reader::read_elements() {
   const Node* array = array_named("element");
   if (!array) return;
   model_.elements.reserve(array->children.size());
+  given(Section::element).reserve(array->children.size());
+  std::vector<std::string> keys_of_all = Element::common_fields().names();
+  keys_of_all.insert(keys_of_all.begin(), {"name", "kind"});
   for (const Node& entry : array->children) {
     const ElementKind* kind = read_kind(entry, "element", catalogue_.elements);
     std::vector<GivenField> fields;
@@ -326,12 +329,11 @@ void Reader::read_elements() {
     element->name = name;
     element->where = entry.where();
     TableReading r = reading(subject_text(kind->name, name), name);
-    r.known_keys = Element::common_fields().names();
-    r.known_keys.insert(r.known_keys.begin(), {"name", "kind"});
+    r.known_keys = keys_of_all;
     const auto own = read_fields(entry, kind->fields, element.get(), r, problems_);
-    for (const Node& child : entry.children) // unknown keys are already reported
-      r.known_keys.push_back(child.key);
+    r.knows_all_keys = true; // unknown keys are already reported
     const auto common = read_fields(entry, Element::common_fields(), element.get(), r, problems_);
+    fields.reserve(fields.size() + own.size() + common.size()); // they are kept
     fields.insert(fields.end(), own.begin(), own.end());
     fields.insert(fields.end(), common.begin(), common.end());
     given(Section::element).push_back(std::move(fields));

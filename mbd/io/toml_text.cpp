@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <string_view>
+#include <tuple>
+#include <utility>
 
 namespace steplap {
 
@@ -54,16 +56,17 @@ Node from_toml(toml::node& source, const std::string* file);
 
 // Moves the members to `node`. The table is emptied, so that a large file is not in memory twice.
 void add_members(toml::table& table, Node& node) {
-  node.children.reserve(table.size());
-  for (auto&& [key, value] : table) {
-    Node child = from_toml(value, node.file);
-    child.key = std::string(key.str());
-    child.key_line = line_of(key.source());
-    child.key_column = column_of(key.source());
-    node.children.push_back(std::move(child));
+  std::vector<std::pair<const toml::key*, toml::node*>> members; // sorted before nodes are made of them, because these are large
+  members.reserve(table.size());
+  for (auto&& [key, value] : table) members.emplace_back(&key, &value);
+  const auto place = [](const auto& member) { return std::pair(line_of(member.first->source()), column_of(member.first->source())); };
+  std::stable_sort(members.begin(), members.end(), [&place](const auto& a, const auto& b) { return place(a) < place(b); });
+  node.children.reserve(members.size());
+  for (const auto& [key, value] : members) {
+    Node& child = node.children.emplace_back(from_toml(*value, node.file));
+    child.key = key->str();
+    std::tie(child.key_line, child.key_column) = place(std::pair(key, value));
   }
-  std::stable_sort(node.children.begin(), node.children.end(),
-                   [](const Node& a, const Node& b) { return std::pair(a.key_line, a.key_column) < std::pair(b.key_line, b.key_column); });
   table.clear();
 }
 

@@ -2,66 +2,97 @@
 
 #include "mbd/base/number_text.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace steplap {
 
 namespace {
 
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
+void append_quoted(std::string& text, const std::string& content) {
+  text += '"';
+  for (const char c : content) {
     if (c == '"' || c == '\\') {
-      result += '\\';
-      result += c;
+      text += '\\';
+      text += c;
     } else if (c == '\n') {
-      result += "\\n";
+      text += "\\n";
     } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
       char escape[8];
       std::snprintf(escape, sizeof escape, "\\u%04X", static_cast<unsigned>(c));
-      result += escape;
+      text += escape;
     } else {
-      result += c;
+      text += c;
     }
   }
-  return result + '"';
+  text += '"';
 }
 
-std::string key_text(const std::string& key) {
-  for (const char c : key)
-    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') return quoted(key);
-  return key.empty() ? "\"\"" : key;
+void append_key(std::string& text, const std::string& key) {
+  const auto is_bare = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
+  if (!key.empty() && std::all_of(key.begin(), key.end(), is_bare)) text += key;
+  else append_quoted(text, key);
 }
 
-// Returns a number with a point or an exponent. Without either it would be read as an integer.
-std::string float_text(double value) {
-  if (std::isnan(value)) return "nan";
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  const std::string text = number_text(value);
-  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+// Appends a number with a point or an exponent. Without either it would be read as an integer.
+void append_float(std::string& text, double value) {
+  if (std::isnan(value)) text += "nan";
+  else if (std::isinf(value)) text += value > 0 ? "inf" : "-inf";
+  else {
+    const std::size_t begin = text.size();
+    append_number(text, value);
+    if (text.find_first_of(".e", begin) == std::string::npos) text += ".0";
+  }
 }
 
-std::string value_text(const Node& node) {
-  std::string text;
+void append_member(std::string& text, const Node& node);
+
+void append_value(std::string& text, const Node& node) {
+  const char* separator = "";
   switch (node.type) {
-  case Node::Type::boolean: return std::get<bool>(node.scalar) ? "true" : "false";
-  case Node::Type::integer: return std::to_string(std::get<long>(node.scalar));
-  case Node::Type::number: return float_text(std::get<double>(node.scalar));
-  case Node::Type::text:
-  case Node::Type::date: return quoted(node.text());
+  case Node::Type::boolean: text += std::get<bool>(node.scalar) ? "true" : "false"; return;
+  case Node::Type::integer: text += std::to_string(std::get<long>(node.scalar)); return;
+  case Node::Type::number: return append_float(text, std::get<double>(node.scalar));
+  case Node::Type::text: return append_quoted(text, std::get<std::string>(node.scalar));
+  case Node::Type::date: text += "\"\""; return;
   case Node::Type::array:
-    for (const Node& child : node.children) text += (text.empty() ? "" : ", ") + value_text(child);
-    return "[" + text + "]";
+    text += '[';
+    for (const Node& child : node.children) {
+      text += std::exchange(separator, ", ");
+      append_value(text, child);
+    }
+    text += ']';
+    return;
   case Node::Type::table: break;
   }
-  for (const Node& child : node.children) text += (text.empty() ? " " : ", ") + key_text(child.key) + " = " + value_text(child);
-  return "{" + text + " }";
+  text += '{';
+  for (const Node& child : node.children) {
+    text += *separator == '\0' ? " " : separator;
+    separator = ", ";
+    append_member(text, child);
+  }
+  text += " }";
 }
 
-void write_values(const Node& table, std::string& text) {
-  for (const Node& child : table.children) text += key_text(child.key) + " = " + value_text(child) + "\n";
+void append_member(std::string& text, const Node& node) {
+  append_key(text, node.key);
+  text += " = ";
+  append_value(text, node);
+}
+
+void append_line(std::string& text, const Node& node) {
+  append_member(text, node);
+  text += '\n';
+}
+
+void append_table(std::string& text, const std::string& open, const std::string& key, const std::string& close, const Node& table) {
+  text += open;
+  append_key(text, key);
+  text += close;
+  for (const Node& child : table.children) append_line(text, child);
 }
 
 } // namespace
@@ -69,18 +100,12 @@ void write_values(const Node& table, std::string& text) {
 std::string write_toml(const Node& root) {
   std::string text;
   for (const Node& child : root.children)
-    if (!child.is_table() && !child.is_array_of_tables()) text += key_text(child.key) + " = " + value_text(child) + "\n";
-  for (const Node& child : root.children) {
-    if (!child.is_table()) continue;
-    text += "\n[" + key_text(child.key) + "]\n";
-    write_values(child, text);
-  }
+    if (!child.is_table() && !child.is_array_of_tables()) append_line(text, child);
+  for (const Node& child : root.children)
+    if (child.is_table()) append_table(text, "\n[", child.key, "]\n", child);
   for (const Node& child : root.children) {
     if (!child.is_array_of_tables()) continue;
-    for (const Node& entry : child.children) {
-      text += "\n[[" + key_text(child.key) + "]]\n";
-      write_values(entry, text);
-    }
+    for (const Node& entry : child.children) append_table(text, "\n[[", child.key, "]]\n", entry);
   }
   return text;
 }

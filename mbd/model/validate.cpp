@@ -135,16 +135,31 @@ FieldChecker::FieldChecker(const Model& model, std::vector<Diagnostic>& problems
 }
 
 void FieldChecker::check(const FieldTable& table, const void* object, const std::string& subject, const Locate& locate) {
-  for (const Field& field : table.fields())
-    if (const std::optional<Location> where = locate(field.name)) check_field(field, field.get(object), subject, *where);
+  for (const Field& field : table.fields()) {
+    const FieldValue value = field.get(object);
+    if (is_sound(field, value)) continue; // a field is located only for a message, because its location has the name of the file
+    if (const std::optional<Location> where = locate(field.name)) check_field(field, value, subject, *where);
+  }
+}
+
+bool FieldChecker::is_sound(const Field& field, const FieldValue& value) const {
+  if (is_absent(value)) return !field.is_required || field.name == "name"; // names are checked separately
+  switch (field.type) {
+  case FieldType::body:
+  case FieldType::marker:
+  case FieldType::signal:
+  case FieldType::element: return refers(field.type, std::get<std::string>(value));
+  case FieldType::signals:
+  case FieldType::elements: {
+    const auto& names = std::get<std::vector<std::string>>(value);
+    return std::all_of(names.begin(), names.end(), [&](const std::string& name) { return refers(field.type, name); });
+  }
+  default: return range_problem(field, value).empty();
+  }
 }
 
 void FieldChecker::check_field(const Field& field, const FieldValue& value, const std::string& subject, const Location& where) {
-  if (is_absent(value)) {
-    if (field.is_required && field.name != "name") // names are checked separately
-      problems_.push_back({where, missing_field_message(field, subject)});
-    return;
-  }
+  if (is_absent(value)) return problems_.push_back({where, missing_field_message(field, subject)});
   if (const std::string problem = range_problem(field, value); !problem.empty())
     problems_.push_back({where, of(field, subject) + " " + problem});
   switch (field.type) {
@@ -222,25 +237,30 @@ private:
     checker_.check(table, object, subject, [&](const std::string& field) { return locate(section, index, field, where); });
   }
 
-  using Seen = std::unordered_map<std::string, Location>;
+  struct Named { ///< object with a name
+    std::size_t index = 0;
+    const Location* where = nullptr; ///< never nullptr
+  };
+  using Seen = std::unordered_map<std::string_view, Named>;
 
   // Checks that the name is given and unique.
   void check_name(Section section, std::size_t index, const std::string& noun, const std::string& name, const Location& where, Seen& seen) {
-    const std::optional<Location> place = locate(section, index, "name", where);
+    const auto place_of = [&](const Named& named) { return locate(section, named.index, "name", *named.where); };
+    const auto [first, is_new] = seen.emplace(name, Named{index, &where});
+    const bool is_text = !name.empty() && !has_control_character(name);
+    const bool is_cell = name.empty() || std::string_view("=+-@").find(name.front()) == std::string_view::npos;
+    if (is_text && is_cell && is_new) return;
+    const std::optional<Location> place = place_of({index, &where});
     if (!place) return;
-    if (name.empty()) {
-      add(*place, "the name of " + subject_text(noun, "") + " must not be empty");
-      return;
-    }
-    if (place->line == 0 && has_control_character(name)) // names from files are checked for control characters when the file is read
+    if (name.empty()) return add(*place, "the name of " + subject_text(noun, "") + " must not be empty");
+    if (place->line == 0 && !is_text) // names from files are checked for control characters when the file is read
       add(*place, subject_text(noun, "") + " '" + name + "': the name must not hold control characters");
-    if (std::string_view("=+-@").find(name.front()) != std::string_view::npos) // names are written to cells of CSV files
+    if (!is_cell) // names are written to cells of CSV files
       add(*place, subject_text(noun, "") + " '" + name + "': the name must not begin with '" + name.front() +
                       "', which a spreadsheet takes for a formula");
-    const auto [first, is_new] = seen.emplace(name, *place);
-    if (!is_new)
-      add(*place,
-          subject_text(noun, "") + " named '" + name + "' exists already" + place_text(first->second, *place) + ": choose another name");
+    if (is_new) return;
+    if (const std::optional<Location> before = place_of(first->second))
+      add(*place, subject_text(noun, "") + " named '" + name + "' exists already" + place_text(*before, *place) + ": choose another name");
   }
 
   void check_settings();
@@ -347,8 +367,9 @@ void Validation::check_elements() {
     const ElementEntry& entry = model_.elements[i];
     const Element& element = *entry.element;
     check_name(Section::element, i, "element", element.name, element.where, seen);
+    const std::string subject = subject_text(entry.kind->name, element.name);
     for (const FieldTable* table : {&entry.kind->fields, &Element::common_fields()})
-      check_table(Section::element, i, *table, &element, subject_text(entry.kind->name, element.name), element.where);
+      check_table(Section::element, i, *table, &element, subject, element.where);
   }
 }
 

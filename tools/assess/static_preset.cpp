@@ -62,7 +62,10 @@ public:
     FieldTable fields;
     fields.add("name", &PresetHeader::name).required().doc("what results call these loads");
     fields.add("source", &PresetHeader::source).required().doc("who requires them, by which document");
-    read_fields(document_.root, fields, &header, {"the loads", {"case"}, {}, {}}, problems_);
+    TableReading reading;
+    reading.subject = "the loads";
+    reading.known_keys = {"case"};
+    read_fields(document_.root, fields, &header, reading, problems_);
     preset_ = {header.name, header.source, {}};
     read_loads();
     if (!problems_.empty()) throw ModelError(std::move(problems_));
@@ -87,7 +90,9 @@ private:
     for (const Node& entry : array->children) {
       StaticLoad load;
       const std::size_t before = problems_.size();
-      read_fields(entry, fields, &load, {"case '" + entry_name(entry) + "'", {}, {}, {}}, problems_);
+      TableReading reading;
+      reading.subject = "case '" + entry_name(entry) + "'";
+      read_fields(entry, fields, &load, reading, problems_);
       if (problems_.size() > before) continue;
       if (!(std::abs(load.pull.x()) <= k_most && std::abs(load.pull.y()) <= k_most))
         problems_.push_back(
