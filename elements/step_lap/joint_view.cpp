@@ -44,6 +44,7 @@ JointView look_at(const StepLapJoint& joint, const StepLapFriction& friction, co
   place_bodies(state.q, state.v, motion);
   const Pose pose = friction.pose_of(motion.data());
   view.patch = friction.patch_at(pose, GripLaw::holding);
+  view.pressure_factor = friction.pressure_at(0.0).factor;
   OverlapWorkspace workspace;
   Region region;
   for (const SheetPair& sheets : friction.sheets()) {
@@ -56,16 +57,16 @@ JointView look_at(const StepLapJoint& joint, const StepLapFriction& friction, co
 } // namespace
 
 double JointView::sliding(int direction) const { // support function h of the unit twist in this direction
-  return interfaces.empty() ? std::numeric_limits<double>::infinity() : evaluate_gradient(patch, Vec3::Unit(direction)).h;
+  return interfaces.empty() ? std::numeric_limits<double>::infinity() : pressure_factor * evaluate_gradient(patch, Vec3::Unit(direction)).h;
 }
 
 double JointView::alone(int direction) const { // largest wrench in this direction that the limit surface contains
-  return interfaces.empty() ? std::numeric_limits<double>::infinity() : 1.0 / required_pressure(patch, Vec3::Unit(direction)).u;
+  return interfaces.empty() ? std::numeric_limits<double>::infinity() : pressure_factor / required_pressure(patch, Vec3::Unit(direction)).u;
 }
 
 RequiredPressure JointView::required(const Vec3& wrench) const {
   if (interfaces.empty()) return {};
-  RequiredPressure found = required_pressure(patch, wrench);
+  RequiredPressure found = required_pressure(patch, wrench / pressure_factor);
   if (!found.converged)
     throw NumericalFailure("the required pressure of '" + joint->name +
                            "' was not found to the last digit; the wrench may be out of all proportion");

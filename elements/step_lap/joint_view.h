@@ -1,4 +1,4 @@
-// Computes the friction capacity of the step-lap joints of a model in the reference pose, before a run.
+// Computes the friction capacity of the step-lap joints of a model in the reference pose at t = 0, before a run.
 //
 // Wrenches and twists are about the limb's centre of gravity, in the active part's axes. Points are relative to the active part's centre of
 // gravity, m.
@@ -19,7 +19,10 @@ struct JointView {
   Patch patch;                                     ///< interfaces with their static coefficients, about the limb's centre of gravity
   std::vector<std::string> beside;                 ///< elements that connect the same two bodies in parallel: "'tie plate' (tie)"
   std::vector<double> areas;                       ///< overlap area of each interface, m^2
+  double pressure_factor = 1.0; ///< factor of all pressures at t = 0, by `pressure_loss` and `pressure_signal`; `patch` is without it
 
+  /// Returns the pressure of an interface at t = 0, Pa.
+  [[nodiscard]] double pressure(std::size_t interface) const { return interfaces[interface]->pressure * pressure_factor; }
   /// Returns the friction force or couple if the limb slides purely along x (0), along y (1) or turns (2), N or N m.
   [[nodiscard]] double sliding(int direction) const;
   /// Returns the largest force along x (0) or y (1) through the limb's centre of gravity, or the largest couple (2), that the joint can

@@ -59,7 +59,7 @@ py::list interfaces(const PyJoint& j) {
   for (std::size_t i = 0; i < j.view.interfaces.size(); ++i) {
     const StepLapInterface& one = *j.view.interfaces[i];
     all.append(py::dict(py::arg("name") = one.name, py::arg("overlap") = j.view.areas[i], py::arg("count") = one.count,
-                        py::arg("pressure") = one.pressure, py::arg("static_friction") = one.static_friction));
+                        py::arg("pressure") = j.view.pressure(i), py::arg("static_friction") = one.static_friction));
   }
   return all;
 }
@@ -71,7 +71,7 @@ template <double (JointView::*capacity)(int) const> std::array<double, 3> three(
 py::dict required(const PyJoint& j, double fx, double fy, double m) {
   const RequiredPressure found = j.view.required(Vec3(fx, fy, m));
   std::optional<double> pressure;
-  if (!j.view.interfaces.empty()) pressure = found.u * j.view.interfaces.front()->pressure;
+  if (!j.view.interfaces.empty()) pressure = found.u * j.view.pressure(0);
   std::optional<std::array<double, 2>> centre;
   if (found.centre) centre = {found.centre->x(), found.centre->y()};
   return py::dict(py::arg("usage") = found.u, py::arg("margin") = found.margin(), py::arg("pressure") = pressure,

@@ -81,7 +81,7 @@ void print_interfaces(std::ostream& out, const JointView& view) {
   for (std::size_t i = 0; i < view.interfaces.size(); ++i) {
     const StepLapInterface& e = *view.interfaces[i];
     table.add_row({e.name, area_cell(view.areas[i]), quantity_cell(e.count, ""), area_cell(view.areas[i] * e.count),
-                   quantity_cell(e.pressure, "Pa"), quantity_cell(e.static_friction, "")});
+                   quantity_cell(view.pressure(i), "Pa"), quantity_cell(e.static_friction, "")});
     area += view.areas[i] * e.count;
     count += e.count;
   }
@@ -107,8 +107,8 @@ void print_usage(std::ostream& out, const JointView& view, const Vec3& wrench) {
   table.add_row({"wrench", "Fx " + quantity_text(wrench[0], "N") + ", Fy " + quantity_text(wrench[1], "N") + ", M " +
                                quantity_text(wrench[2], "N m")});
   table.add_row({"u", Cell(quantity_text(required.u, "") + (required.u > 1.0 ? ": slides" : ": holds"), required.u)});
-  const double pressure = required.u * view.interfaces.front()->pressure;
-  table.add_row({"p_req", Cell(quantity_text(pressure, "Pa") + " of " + quantity_text(view.interfaces.front()->pressure, "Pa") +
+  const double pressure = required.u * view.pressure(0);
+  table.add_row({"p_req", Cell(quantity_text(pressure, "Pa") + " of " + quantity_text(view.pressure(0), "Pa") +
                                    (view.interfaces.size() > 1 ? " at the first interface" : ""),
                                pressure, "Pa")});
   table.add_row({"margin", quantity_cell(required.margin(), "")});
@@ -156,7 +156,7 @@ ExitCode joint(const JointOptions& options, Console& console) {
   const auto loaded = load_model(options.model, options.overrides);
   const std::vector<JointView> views = chosen_joints(options, *loaded);
   if (console.verbosity == Verbosity::quiet) return ExitCode::done;
-  console.out << "Step-lap joints in the reference pose. Wrenches and twists are about the limb's centre of gravity,\n"
+  console.out << "Step-lap joints in the reference pose at t = 0. Wrenches and twists are about the limb's centre of gravity,\n"
                  "in the active part's axes; points are from the active part's centre of gravity.\n";
   for (const JointView& view : views) {
     console.out << "\n";

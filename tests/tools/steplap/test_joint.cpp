@@ -47,6 +47,25 @@ TEST_CASE("joint looks at the model as laid over") {
   CHECK(has(outcome.out, "'active part', never slides (monitor)"));
 }
 
+TEST_CASE("joint counts the pressure that relaxation and the signal leave at the start") {
+  // 428.974 kN along x without either; 0.6 and 0.3 of it.
+  const std::string core = STEPLAP_MODELS "/layouts/three_limb.toml";
+  const std::vector<std::string> rest = {"joint",    core,         "--joint", "front joint",
+                                         "--wrench", "100 kN,0,0", "--set",   "core.core.pressure_loss=0.4"};
+  const Outcome lost = steplap_does(rest);
+  CHECK(lost.code == 0);
+  for (const char* part : {"along x     257.384 kN    257.384 kN\n", " of 60 kPa"})
+    CHECK_MESSAGE(has(lost.out, part), lost.out << lost.err);
+  const Workbench bench;
+  const std::string halved = bench.write("halved.toml", "extends = \"" + core +
+                                                            "\"\n[[signal]]\nkind = \"constant\"\nname = \"half\"\nvalue = 0.5\n"
+                                                            "[[core]]\nname = \"core\"\npressure_signal = \"half\"\npressure_loss = 0.4\n");
+  const Outcome both = steplap_does({"joint", halved, "--joint", "front joint", "--wrench", "100 kN,0,0"});
+  CHECK(both.code == 0);
+  for (const char* part : {"along x     128.692 kN    128.692 kN\n", " of 30 kPa"})
+    CHECK_MESSAGE(has(both.out, part), both.out << both.err);
+}
+
 TEST_CASE("a joint without interfaces holds whatever it takes") {
   const Workbench bench;
   const std::string model =
