@@ -171,6 +171,20 @@ std::string LoadCaseResults::reason() const {
          (count > 1 ? " " + counted(count - 1, "more case has", "more cases have") + " the same verdict." : "") + unjudged;
 }
 
+namespace {
+
+// Refuses a value for all cases that a case replaces by its own: it would have no effect there.
+void refuse_replaced(const LoadCase& one, const std::vector<std::string>& for_all, std::vector<Diagnostic>& problems) {
+  const auto path_of = [](const std::string& setting) { return setting.substr(0, setting.find('=')); };
+  for (const std::string& own : one.changes)
+    for (const std::string& given : for_all)
+      if (path_of(own) == path_of(given))
+        problems.push_back({one.place("set"), "case '" + one.name + "' sets '" + path_of(own) +
+                                                  "' itself, so that the value for all cases would not reach it: change it in the case"});
+}
+
+} // namespace
+
 LoadCaseResults run_load_cases(const std::string& path, const std::vector<std::string>& overrides, const RunCatalogue& catalogue,
                                const RunOptions& options, const CaseReading& reading) {
   const std::string text = read_input(path, {}); // read once, so that all cases use the same text
@@ -181,6 +195,7 @@ LoadCaseResults run_load_cases(const std::string& path, const std::vector<std::s
   std::vector<SharedModel> loaded;
   std::vector<Diagnostic> problems;
   for (const LoadCase& one : cases) {
+    refuse_replaced(one, overrides, problems);
     std::vector<std::string> all = overrides;
     for (const std::string& own : one.overrides(model.header.gravity)) all.push_back(own);
     loaded.push_back(load_case(one, text, results.models.front()->path, all, catalogue, problems));

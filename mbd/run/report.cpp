@@ -4,6 +4,7 @@
 #include "mbd/run/blows.h"
 #include "mbd/run/findings.h"
 #include "mbd/run/plausible_run.h"
+#include "mbd/run/quantity_text.h"
 #include "mbd/run/result_files.h"
 #include "mbd/run/slip_ties.h"
 #include "mbd/run/with_settings.h"
@@ -72,15 +73,18 @@ void add_finding(Report& report, const Finding& finding, const RunOptions& optio
 void ask_second_opinion(Report& report, const RunOptions& options) {
   const bool is_stopped = options.stop && !options.stop().empty();
   if (!options.has_second_opinion || report.judgement.verdict != Verdict::hold || is_stopped) return;
-  report.second_opinion = second_opinion(report.run, options);
+  report.second_opinion = second_opinion(report.run, options, !report.estimate.errors);
   if (const std::string& what = report.second_opinion->disagreement; !what.empty())
     distrust(report.judgement, "a second method disagrees beyond both errors: " + what);
-  // A "hold" requires that the numbers were checked by the error estimate or by the second method.
-  const std::string& none_because = report.second_opinion->none_because;
-  if (none_because.empty() || report.estimate.errors) return;
+  // A "hold" requires that the numbers were checked to the end, by the error estimate or by the second method.
+  const SecondOpinion& second = *report.second_opinion;
+  if (second.reaches(report.run.result.final_state.t) || report.estimate.errors) return;
   const std::string why = report.estimate.status == EstimateStatus::too_expensive ? "would take long" : report.estimate.reason;
-  add_cap(report.judgement, "nothing has checked its numbers: the errors are not estimated (" + why +
-                                "), and no second method can run the scene (" + none_because + ")");
+  add_cap(report.judgement, second.none_because.empty() ? "nothing has checked its numbers after t = " +
+                                                              quantity_text(second.known_until, "s") + ": the errors are not estimated (" +
+                                                              why + "), and " + second.method + " cannot be compared from there on"
+                                                        : "nothing has checked its numbers: the errors are not estimated (" + why +
+                                                              "), and no second method can run the scene (" + second.none_because + ")");
 }
 
 } // namespace

@@ -181,13 +181,16 @@ private:
 
 } // namespace
 
-SecondOpinion second_opinion(const Run& asked, const RunOptions& options) {
+SecondOpinion second_opinion(const Run& asked, const RunOptions& options, bool is_alone) {
   SecondOpinionRuns asker(asked, options);
   SecondOpinion opinion = asker.time_stepping();
-  if (opinion.none_because.empty() || method(options_of(asked.loaded->model).integrator).is_time_stepping) return opinion;
+  const bool is_enough =
+      opinion.none_because.empty() && (!is_alone || !opinion.disagreement.empty() || opinion.reaches(asked.result.final_state.t));
+  if (is_enough || method(options_of(asked.loaded->model).integrator).is_time_stepping) return opinion;
   SecondOpinion drawn = asker.drawn_steps();
-  if (drawn.none_because.empty()) return drawn;
-  opinion.none_because += "; with steps drawn at random " + drawn.none_because;
+  const bool says_more = !opinion.none_because.empty() || !drawn.disagreement.empty() || drawn.known_until > opinion.known_until;
+  if (drawn.none_because.empty() && says_more) return drawn;
+  if (!opinion.none_because.empty()) opinion.none_because += "; with steps drawn at random " + drawn.none_because;
   return opinion;
 }
 

@@ -23,9 +23,13 @@ struct SecondOpinion {
   std::string disagreement; ///< difference that exceeds both errors; empty if there is none
   double worst_ratio = 0.0; ///< largest ratio of a difference to the one that both errors permit
   double known_until = 0.0; ///< time from which the second method is too coarse to compare, s
+
+  /// Returns true if the methods were compared up to `end`, s: the last row of both may lie a little before it.
+  [[nodiscard]] bool reaches(double end) const { return none_because.empty() && known_until >= end * (1.0 - 1e-6); }
 };
 
-/// Checks `run` by a second method. Precondition: `run` reached its end and was made with `options`.
-[[nodiscard]] SecondOpinion second_opinion(const Run& run, const RunOptions& options);
+/// Checks `run` by a second method. `is_alone`: nothing else checks the run, so if time stepping can be compared only up to some time, the
+/// random steps are tried, too. Precondition: `run` reached its end and was made with `options`.
+[[nodiscard]] SecondOpinion second_opinion(const Run& run, const RunOptions& options, bool is_alone);
 
 } // namespace steplap

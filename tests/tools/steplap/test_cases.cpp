@@ -209,6 +209,10 @@ TEST_CASE("wrong cases are refused, each with file and line") {
     CHECK(has(outcome.err, "wrong.toml"));
     if (!wrong.line.empty()) CHECK(has(outcome.err, "wrong.toml" + line_of(wrong.added, wrong.line)));
   }
+  const std::string own = bench.write("own.toml", k_hanging + load_case("a", "set = [\"element.spring.damping=3\"]"));
+  const Outcome replaced = steplap_does({"cases", own, "--set", "element.spring.damping=2"});
+  CHECK(replaced.code == 3);
+  CHECK(has(replaced.err, "case 'a' sets 'element.spring.damping' itself"));
 }
 
 TEST_CASE("tables fit into 80 columns, however long the names and however many the cases") {
