@@ -135,50 +135,38 @@ FieldChecker::FieldChecker(const Model& model, std::vector<Diagnostic>& problems
 }
 
 void FieldChecker::check(const FieldTable& table, const void* object, const std::string& subject, const Locate& locate) {
-  for (const Field& field : table.fields()) {
-    const FieldValue value = field.get(object);
-    if (is_sound(field, value)) continue; // a field is located only for a message, because its location has the name of the file
-    if (const std::optional<Location> where = locate(field.name)) check_field(field, value, subject, *where);
-  }
+  for (const Field& field : table.fields()) check_field(field, field.get(object), subject, locate);
 }
 
-bool FieldChecker::is_sound(const Field& field, const FieldValue& value) const {
-  if (is_absent(value)) return !field.is_required || field.name == "name"; // names are checked separately
+// A field is located only for a message: its location contains the name of the file, and most fields of a large model need none.
+void FieldChecker::check_field(const Field& field, const FieldValue& value, const std::string& subject, const Locate& locate) {
+  const auto report = [&](const std::string& message) {
+    if (const std::optional<Location> where = locate(field.name)) problems_.push_back({*where, message});
+  };
+  if (is_absent(value)) {
+    if (field.is_required && field.name != "name") report(missing_field_message(field, subject)); // names are checked separately
+    return;
+  }
+  if (const std::string problem = range_problem(field, value); !problem.empty()) report(of(field, subject) + " " + problem);
   switch (field.type) {
   case FieldType::body:
   case FieldType::marker:
   case FieldType::signal:
-  case FieldType::element: return refers(field.type, std::get<std::string>(value));
-  case FieldType::signals:
-  case FieldType::elements: {
-    const auto& names = std::get<std::vector<std::string>>(value);
-    return std::all_of(names.begin(), names.end(), [&](const std::string& name) { return refers(field.type, name); });
-  }
-  default: return range_problem(field, value).empty();
-  }
-}
-
-void FieldChecker::check_field(const Field& field, const FieldValue& value, const std::string& subject, const Location& where) {
-  if (is_absent(value)) return problems_.push_back({where, missing_field_message(field, subject)});
-  if (const std::string problem = range_problem(field, value); !problem.empty())
-    problems_.push_back({where, of(field, subject) + " " + problem});
-  switch (field.type) {
-  case FieldType::body:
-  case FieldType::marker:
-  case FieldType::signal:
-  case FieldType::element: check_reference(field, std::get<std::string>(value), subject, where); break;
+  case FieldType::element: check_reference(field, std::get<std::string>(value), subject, locate); break;
   case FieldType::signals:
   case FieldType::elements:
-    for (const std::string& name : std::get<std::vector<std::string>>(value)) check_reference(field, name, subject, where);
+    for (const std::string& name : std::get<std::vector<std::string>>(value)) check_reference(field, name, subject, locate);
     break;
   default: break;
   }
 }
 
-void FieldChecker::check_reference(const Field& field, const std::string& name, const std::string& subject, const Location& where) {
+void FieldChecker::check_reference(const Field& field, const std::string& name, const std::string& subject, const Locate& locate) {
   if (refers(field.type, name)) return;
+  const std::optional<Location> where = locate(field.name);
+  if (!where) return;
   problems_.push_back(
-      {where, of(field, subject) + ": there is no " + reference_noun(field.type) + " '" + name + "'" + suggestion(field.type, name)});
+      {*where, of(field, subject) + ": there is no " + reference_noun(field.type) + " '" + name + "'" + suggestion(field.type, name)});
 }
 
 bool FieldChecker::refers(FieldType type, const std::string& name) const {

@@ -36,9 +36,8 @@ public:
 private:
   using Names = std::unordered_set<std::string>;
 
-  [[nodiscard]] bool is_sound(const Field& field, const FieldValue& value) const;
-  void check_field(const Field& field, const FieldValue& value, const std::string& subject, const Location& where);
-  void check_reference(const Field& field, const std::string& name, const std::string& subject, const Location& where);
+  void check_field(const Field& field, const FieldValue& value, const std::string& subject, const Locate& locate);
+  void check_reference(const Field& field, const std::string& name, const std::string& subject, const Locate& locate);
   [[nodiscard]] bool refers(FieldType type, const std::string& name) const;
   [[nodiscard]] std::string suggestion(FieldType type, const std::string& name);
 

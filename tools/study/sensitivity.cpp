@@ -235,10 +235,11 @@ Answer morris(StudyRun& run) {
 
 // --- Sobol indices --------------------------------------------------------------------------------
 
-// Confidence interval of the correlation coefficient of two columns of `output`, each `size` rows from `a` and `b`. The scatter of the
-// coefficient r is that of its influence function, x y − r (x² + y²)/2 with standardised x and y, because responses are seldom normal:
-// Fisher's 1/√n would cover 60 % instead of 95 % for a lognormal response. The interval is formed on Fisher's scale atanh r, so that it
-// stays within −1 and 1. If one row carries much of the scatter, rarer rows that carry more are missing, and the interval is too short.
+// Interval of the correlation coefficient r of two columns of `output`, each `size` rows from `a` and `b`. Responses are seldom normal, as
+// Fisher's 1/√n assumes: the scatter of r is that of its influence function, x y − r (x² + y²)/2 with standardised x and y. The interval is
+// formed on the scale atanh r, so that it stays within −1 and 1. If one row carries much of the scatter, rarer rows that carry more are missing,
+// and the interval is too short. (Of 500 samples of exp(2 x), 95 %: Fisher's misses 49 of 120 exact indices, this one 26, 8 of them with the
+// remark.)
 struct CorrelationFound {
   Interval interval;
   bool is_uneven = false;
