@@ -26,7 +26,8 @@ struct Estimate {
 };
 
 /// Estimates the errors of `run`. The cost of finer runs is measured in operations, not in time: verdicts depend on the errors and must not
-/// depend on the speed or load of the computer.
-[[nodiscard]] Estimate estimate_errors(const Run& run, const RunOptions& options);
+/// depend on the speed or load of the computer. `is_decisive`: the verdict is "hold" unless the errors say otherwise. Such an estimate may
+/// cost ten times as much, and any amount if the hold is also checked by a second method.
+[[nodiscard]] Estimate estimate_errors(const Run& run, const RunOptions& options, bool is_decisive);
 
 } // namespace steplap

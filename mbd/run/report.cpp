@@ -56,12 +56,13 @@ void Report::write(const std::string& folder, bool is_overwriting) const { write
 
 namespace {
 
-// Applies the error estimate to the verdict. A failed estimate makes the errors unknown; without a requested estimate the verdict is
-// unchanged.
+// Applies the error estimate to the verdict. If the estimate failed or is too expensive, criteria that are met stay open. If the user left
+// it out, the verdict is unchanged.
 void weigh(Report& report) {
   const Run& run = report.run;
   if (report.estimate.errors) weigh_errors(report.judgement, run.loaded->model, *run.loaded->system, run.result, *report.estimate.errors);
   if (report.estimate.status == EstimateStatus::failed) leave_open(report.judgement, "the finer run failed");
+  if (report.estimate.status == EstimateStatus::too_expensive) leave_open(report.judgement, report.estimate.reason);
 }
 
 void add_finding(Report& report, const Finding& finding, const RunOptions& options) {
@@ -79,12 +80,12 @@ void ask_second_opinion(Report& report, const RunOptions& options) {
   // A "hold" requires that the numbers were checked to the end, by the error estimate or by the second method.
   const SecondOpinion& second = *report.second_opinion;
   if (second.reaches(report.run.result.final_state.t) || report.estimate.errors) return;
-  const std::string why = report.estimate.status == EstimateStatus::too_expensive ? "would take long" : report.estimate.reason;
-  add_cap(report.judgement, second.none_because.empty() ? "nothing has checked its numbers after t = " +
-                                                              quantity_text(second.known_until, "s") + ": the errors are not estimated (" +
-                                                              why + "), and " + second.method + " cannot be compared from there on"
-                                                        : "nothing has checked its numbers: the errors are not estimated (" + why +
-                                                              "), and no second method can run the scene (" + second.none_because + ")");
+  add_cap(report.judgement, second.none_because.empty()
+                                ? "nothing has checked its numbers after t = " + quantity_text(second.known_until, "s") +
+                                      ": the errors are not estimated (" + report.estimate.reason + "), and " + second.method +
+                                      " cannot be compared from there on"
+                                : "nothing has checked its numbers: the errors are not estimated (" + report.estimate.reason +
+                                      "), and no second method can run the scene (" + second.none_because + ")");
 }
 
 } // namespace
@@ -117,7 +118,8 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
   }
   if (!options.has_extremes) // without extremes it is unknown whether the capacity of a monitored joint was exceeded
     add_cap(report.judgement, "extremes were not looked for, by which a run is judged and trusted");
-  report.estimate = estimate_errors(report.run, options);
+  const bool is_decisive = report.judgement.has_criteria && report.judgement.verdict == Verdict::hold;
+  report.estimate = estimate_errors(report.run, options, is_decisive);
   if (report.estimate.balance) {
     add_finding(report, balance_finding(loaded, *report.estimate.balance), options);
     add_cap(report.judgement, text_with_place(report.findings.back()));

@@ -15,7 +15,7 @@ namespace steplap {
 /// When the errors of a run are estimated.
 enum class Estimating {
   never, ///< never: criteria are judged as if the numbers were exact
-  cheap, ///< if the finer runs cost about a second or less, measured in evaluations, not in time
+  cheap, ///< if the finer runs cost about a second or less, ten if a "hold" depends on them, measured in evaluations, not in time
   always ///< always, at any cost
 };
 

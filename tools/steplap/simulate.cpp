@@ -269,8 +269,9 @@ Command simulate_command() {
   steplap simulate my.toml --set "element.front foot.stiffness=2 GN/m" --set body.tank.mass="48 t"
 Each model gets a folder of its own, DIR/<name of the model file>, with trajectory.csv, events.csv,
 summary.json and model.toml. The screen tells the verdict, what happened and what came nearest to its limit; with -v it has
-tables of all events and extremes, of several models beside each other. steplap show tells the same later, from the folder. In files and tables all numbers stand with their estimated error, where that takes about a second of computing
-or a few; else it is said what it would take, or when it was given up. If the computation fails, or Ctrl-C (SIGINT, SIGTERM, SIGHUP) stops it, what there is is saved
+tables of all events and extremes, of several models beside each other. steplap show tells the same later, from the folder. In files and
+tables all numbers stand with their estimated error, where that takes about a second of computing, or ten if a hold depends on it; else it
+is said what it would take, or when it was given up, and a verdict of hold is open. If the computation fails, or Ctrl-C (SIGINT, SIGTERM, SIGHUP) stops it, what there is is saved
 as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends it at once.
 )";
   command.options = {
@@ -289,7 +290,7 @@ as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends
        "it comes to"},
       {"--estimate-error", &o->is_error_estimated, "",
        "estimate the error of all numbers, from runs at a finer tolerance or step, however long they take; without "
-       "it, where they take about a second"},
+       "it, where they take about a second, or ten if a hold depends on them"},
       {"--no-estimate", &o->is_estimate_left_out, "", "do not estimate the error"},
       {"--digits", &o->digits, "N|full",
        "digits of the numbers on the screen (default: 3; one more where the first is a 1), or all that are known, with their errors; "

@@ -343,3 +343,30 @@ TEST_CASE("a large scene has the extremes that are asked for, and those of every
   REQUIRE(range != report.ranges().end());
   CHECK(range->low.value == doctest::Approx(-9.81 * 0.1).epsilon(1e-12)); // free fall, which rk4 integrates exactly
 }
+
+// The statistics are made up, because a run whose estimate is too expensive takes minutes.
+TEST_CASE("a criterion that is met is open if the estimate of its error would take long, and an estimate that decides may cost more") {
+  const std::string pendulum = std::string(k_pendulum).replace(std::string(k_pendulum).find("stay"), 4, "distance");
+  const std::string criterion = "[[acceptance]]\nname = 'near'\nchannel = 'bob.x'\nwithin = 2.0\nconsequence = 'reject'\n";
+  const auto loaded = load_model_text(pendulum + "b = 'ground'\n" + criterion, "pendulum.toml", {"simulation.integrator=moreau"});
+  const Run run = run_model(loaded, {});
+  const auto reported = [&](double parts, const RunOptions& options) {
+    Run as_dear = run;
+    RunStatistics& statistics = as_dear.result.statistics;
+    statistics.evaluations = 1;
+    statistics.evaluations = static_cast<long>(parts / evaluation_cost(*loaded->system, statistics));
+    return report_on(std::move(as_dear), {}, options);
+  };
+  // Two finer runs cost six times the run. The limits are 1e7 and 1e8 parts.
+  const Report cheap = reported(1e6, {}), decisive = reported(1e7, {}), dear = reported(1e8, {});
+  CHECK(cheap.judgement.verdict == Verdict::hold);
+  CHECK(decisive.judgement.verdict == Verdict::hold);
+  CHECK(dear.estimate.status == EstimateStatus::too_expensive);
+  CHECK(dear.judgement.verdict == Verdict::open);
+  CHECK(dear.judgement.criteria.at(0).doubt == "met, but its error is not known: the estimate would take long; ask for it explicitly");
+  RunOptions checked;
+  checked.has_second_opinion = true;
+  const Report twice = reported(1e8, checked);
+  CHECK(twice.estimate.status == EstimateStatus::known);
+  CHECK(twice.judgement.verdict == Verdict::hold);
+}

@@ -184,5 +184,5 @@ TEST_CASE("an estimate of much work is left out by count, not by the clock, and 
   CHECK(slow.code == 0);
   CHECK(has(slow.out, "error not estimated: would take about "));
   CHECK(has(slow.out, "ask with --estimate-error"));
-  CHECK(has(text_of(bench.at("out/a/summary.json")), "\"error_not_estimated\": \"would take long; ask for it explicitly\""));
+  CHECK(has(text_of(bench.at("out/a/summary.json")), "\"error_not_estimated\": \"the estimate would take long; ask for it explicitly\""));
 }
