@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 namespace steplap {
 
@@ -30,7 +32,14 @@ Dynamics::Dynamics(const System& system)
   evaluation_.scratch = scratch_.pointers();
 }
 
+void Dynamics::refuse(Stage stage) const {
+  constexpr const char* k_names[] = {"layout", "motion", "rates", "reactions"};
+  throw std::logic_error(std::string("dynamics: results of stage '") + k_names[static_cast<int>(stage)] + "' are read, but only stage '" +
+                         k_names[static_cast<int>(stage_)] + "' is reached");
+}
+
 void Dynamics::set_state(const State& state) {
+  stage_ = Stage::layout;
   state_ = &state;
   evaluation_.mode = state.mode.data();
   evaluation_.friction = state.friction.data();
@@ -121,14 +130,14 @@ void Dynamics::apply_forces() {
 void Dynamics::finish_power(const double* a) {
   const Layout& layout = *layout_;
   add_power_of_drives(
-      layout, arrays_.force.data(), layout.schur_rows.data(), multipliers().data(), a,
+      layout, arrays_.force.data(), layout.schur_rows.data(), rows_.multipliers().data(), a,
       [&](std::size_t i) { return rows_.target_rates()[layout.driven_rows[i]]; },
       [this](std::size_t i) -> const SignalJet& { return kinematics_.lock_target(i); }, evaluation_.work);
 }
 
 void Dynamics::finish_events() {
   const Layout& layout = *layout_;
-  for (const HeldRow& held : layout.held_rows) friction_force_[held.friction_row] = multipliers()[held.row];
+  for (const HeldRow& held : layout.held_rows) friction_force_[held.friction_row] = rows_.multipliers()[held.row];
   if (layout.is_singular() && (!layout.sharing || is_rank_new_)) [[unlikely]] {
     find_sharing();
     is_rank_new_ = false;
@@ -152,11 +161,12 @@ void Dynamics::evaluate(Request request, double t, const double* y, double* dy) 
   switch (request) {
   case Request::rates: return rates(t, y, dy);
   case Request::rates_without_projection: return rates_without_projection(t, y, dy);
-  case Request::stage: return evaluate_stage(t, y, dy);
-  case Request::stage_near_limit: return evaluate_stage_and_joints(t, y, dy, false);
-  case Request::stage_and_joints: return evaluate_stage_and_joints(t, y, dy, true);
+  case Request::stage: evaluate_stage(t, y, dy); break;
+  case Request::stage_near_limit: evaluate_stage_and_joints(t, y, dy, false); break;
+  case Request::stage_and_joints: evaluate_stage_and_joints(t, y, dy, true); break;
   case Request::end: return evaluate_end(t, y, dy);
   }
+  stage_ = Stage::layout; // whether there are by-products depends on machine code
 }
 
 void Dynamics::rates(double t, const double* y, double* dy) {
@@ -207,6 +217,7 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   t = std::min(t, time_cap_);
   begin_rates(t, y, dy);
   kinematics_.place(t, y, y + n);
+  stage_ = Stage::motion;
   rows_.prepare();
   apply_forces();
 
@@ -216,6 +227,7 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   put_place_rates(y, dy);
   rows_.solve(t, arrays_.force.data(), a);
   finish_rates(y, dy);
+  stage_ = Stage::rates;
 }
 
 // Writes the targets of driven rows to `into`. Not inlined, since few models have driven rows.
@@ -289,6 +301,7 @@ void Dynamics::evaluate_end(double t, const double* y, double* dy) {
   }
   const StageProgram& program = *stage_programs_.now();
   defer_byproducts(program, t, y);
+  stage_ = Stage::rates;
   if (!layout_->has_rigid_joint_events) return;
   was_merged_near_ = is_merged_near_;
   is_merged_near_ = evaluate_joint_events_by_code(program, t);
@@ -334,7 +347,10 @@ void Dynamics::evaluate_byproducts() {
 
 double Dynamics::mechanical_energy(double t, const double* y) {
   t = std::min(t, time_cap_);
-  if (!kinematics_.is_placed(t, y)) kinematics_.place(t, y, y + coordinate_count());
+  if (!kinematics_.is_placed(t, y)) {
+    kinematics_.place(t, y, y + coordinate_count());
+    stage_ = Stage::motion;
+  }
   double kinetic = 0.0, potential = 0.0;
   for (const Cluster& c : layout_->clusters) {
     const Motion<double>& m = motion_[c.motion];
@@ -362,6 +378,7 @@ bool Dynamics::has_groups() const { return !sharing()->groups().empty(); }
 
 // Computes the event functions of merged joints and of load-sharing groups. Returns true if one of them is near its limit.
 bool Dynamics::evaluate_joint_events(const double* dy) {
+  need(Stage::rates);
   ensure_byproducts();
   kinematics_.complete();
   const double* const cluster_a = cluster_accelerations(dy);
@@ -388,6 +405,7 @@ bool Dynamics::evaluate_wrench_events() {
 }
 
 Snapshot Dynamics::snapshot(const double* dy) {
+  need(Stage::rates);
   const Layout& layout = *layout_;
   ensure_byproducts();
   kinematics_.complete();
@@ -399,6 +417,7 @@ Snapshot Dynamics::snapshot(const double* dy) {
   if (layout.has_mechanisms()) reactions_.find_pins(cluster_a, lambda);
   reactions_.take_rows(dy + coordinate_count(), lambda);
   settle_loads();
+  stage_ = Stage::reactions;
   Snapshot s;
   s.t = evaluation_.t;
   s.motion = motion_;
