@@ -32,9 +32,16 @@ std::vector<std::string> beside(const StepLapJoint& joint, const Model& model) {
   return found;
 }
 
+// Returns a wrench or twist in axes that are turned by −angle.
+Vec3 turned(const Vec3& w, double angle) {
+  const Vec2 plane = rotated(w.head<2>(), angle);
+  return {plane.x(), plane.y(), w[2]};
+}
+
 JointView look_at(const StepLapJoint& joint, const StepLapFriction& friction, const Model& model, const System& system) {
   JointView view;
   view.joint = &joint;
+  view.friction = &friction;
   for (const ElementEntry& entry : model.elements)
     if (const auto* e = dynamic_cast<const StepLapInterface*>(entry.element.get()); e && e->joint == joint.name)
       view.interfaces.push_back(e);
@@ -57,19 +64,23 @@ JointView look_at(const StepLapJoint& joint, const StepLapFriction& friction, co
 } // namespace
 
 double JointView::sliding(int direction) const { // support function h of the unit twist in this direction
-  return interfaces.empty() ? std::numeric_limits<double>::infinity() : pressure_factor * evaluate_gradient(patch, Vec3::Unit(direction)).h;
+  if (interfaces.empty()) return std::numeric_limits<double>::infinity();
+  return pressure_factor * evaluate_gradient(patch, turned(Vec3::Unit(direction), friction->part_frame.theta)).h;
 }
 
 double JointView::alone(int direction) const { // largest wrench in this direction that the limit surface contains
-  return interfaces.empty() ? std::numeric_limits<double>::infinity() : pressure_factor / required_pressure(patch, Vec3::Unit(direction)).u;
+  if (interfaces.empty()) return std::numeric_limits<double>::infinity();
+  return pressure_factor / required_pressure(patch, turned(Vec3::Unit(direction), friction->part_frame.theta)).u;
 }
 
 RequiredPressure JointView::required(const Vec3& wrench) const {
   if (interfaces.empty()) return {};
-  RequiredPressure found = required_pressure(patch, wrench / pressure_factor);
+  RequiredPressure found = required_pressure(patch, turned(wrench, friction->part_frame.theta) / pressure_factor);
   if (!found.converged)
     throw NumericalFailure("the required pressure of '" + joint->name +
                            "' was not found to the last digit; the wrench may be out of all proportion");
+  found.direction = turned(found.direction, -friction->part_frame.theta);
+  if (found.centre) found.centre = friction->in_part(*found.centre);
   return found;
 }
 

@@ -60,6 +60,13 @@ public:
   StepLapFriction(std::string name, int index, int row, std::vector<SheetPair> sheets, bool is_monitor, bool stops_when_apart);
 
   RowSpec hold[3]; ///< x and y in the axes of the active part, and the angle
+  /// Centre of gravity and axes of the active part relative to those of its compiled body, in which all positions, wrenches and twists of
+  /// this class are: zero for a body that moves, the pose in the ground for a fixed one.
+  Pose part_frame;
+  /// Returns a vector in the axes of the active part.
+  [[nodiscard]] Vec2 in_part_axes(const Vec2& vector) const { return rotated(vector, -part_frame.theta); }
+  /// Returns a point relative to the active part's centre of gravity, in its axes, m.
+  [[nodiscard]] Vec2 in_part(const Vec2& point) const { return in_part_axes(point - Vec2(part_frame.x, part_frame.y)); }
   /// Sets the signals of PressureState: factor (1 − loss) · `factor`, and the acceleration across the sheets, m/s². Null: constant.
   void set_pressure(const Signal* factor, double loss, const Signal* acceleration);
   /// Returns the pressure factor and the acceleration across the sheets at time t, s. Throws NumericalFailure if the factor is not

@@ -139,13 +139,14 @@ SheetPair make_sheets(const StepLapInterface& e, const std::string& limb, const 
   pair.limb = make_sheet(e, limb_of(e), limb, builder);
   pair.static_traction = e.count * e.pressure * e.static_friction;
   pair.kinetic_traction = e.count * e.pressure * e.kinetic_friction.value_or(e.static_friction);
+  // From the axes of `frame` to those of the compiled active part, which for a fixed body are those of the ground.
   const Body* part = builder.model().find_body(active_part);
-  const double angle = e.frame == "body" && part ? part->angle : 0.0;
-  pair.gradient = rotated(e.pressure_gradient, angle - builder.reference(builder.body(active_part)).theta) / e.pressure;
+  const double turn = (e.frame == "body" && part ? part->angle : 0.0) - builder.reference(builder.body(active_part)).theta;
+  pair.gradient = rotated(e.pressure_gradient, turn) / e.pressure;
   pair.transverse = e.transverse_pressure / e.pressure;
   pair.count = e.count;
   pair.clearance = e.clearance;
-  if (e.across) pair.across = e.frame == "body" || !part ? e.across->normalized() : rotated(e.across->normalized(), -part->angle);
+  if (e.across) pair.across = rotated(e.across->normalized(), turn);
   return pair;
 }
 

@@ -89,7 +89,7 @@ void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction,
                       axis == 0 ? "along x of the active part's axes" : "along y of the active part's axes"},
                      [self, axis](const Snapshot& s) {
                        const auto& centre = self->usage(s).centre;
-                       return centre ? (*centre)[axis] : k_nan;
+                       return centre ? self->in_part(*centre)[axis] : k_nan;
                      })
         .has_extremes = false; // no extremes: the value can be infinite
   builder.add_channel("area", "m^2", "overlap of one interface of each kind, added", [self](const Snapshot& s) { return self->area(s); });
@@ -109,23 +109,30 @@ void add_loss_channels(SystemBuilder& builder, const StepLapFriction& friction, 
                         [self](const Snapshot& s) { return self->loss(s).clearance_left; });
 }
 
-double coordinate(const Pose& pose, int r) { return r == 0 ? pose.x : r == 1 ? pose.y : pose.theta; }
+// Returns the displacement and the rotation between two poses of the limb, in the axes of the active part.
+Vec3 change_of(const StepLapFriction& friction, const Pose& from, const Pose& to) {
+  const Vec2 moved = friction.in_part_axes(Vec2(to.x - from.x, to.y - from.y));
+  return {moved.x(), moved.y(), to.theta - from.theta};
+}
 
 void add_slide_channels(SystemBuilder& builder, const StepLapFriction& friction) {
   const auto* self = &friction;
   const RowSpec* hold = friction.hold;
   const bool is_elastic = friction.is_elastic();
   static constexpr const char* names[] = {"dx", "dy", "theta_acc"};
+  const auto pose_by_rows = [hold](const Motion<double>* motion) {
+    const auto value = [&](int r) { return evaluate_row<false>(hold[r], motion).value; };
+    return Pose{value(0), value(1), value(2)};
+  };
+  const Pose start = pose_by_rows(&builder.reference(0));
   for (int r = 0; r < 3; ++r) {
-    const double start = evaluate_row<false>(hold[r], &builder.reference(0)).value;
     const double sign = r < 2 ? 1.0 : -1.0; // θ_acc is the angle of the active part relative to the limb (23)
     builder.add_channel(names[r], r < 2 ? "m" : "rad",
                         {"slid since the reference pose", r == 0   ? "of the limb, along x of the active part's axes"
                                                           : r == 1 ? "of the limb, along y of the active part's axes"
                                                                    : "of the active part against the limb, counter-clockwise"},
-                        [self, hold, r, start, sign, is_elastic](const Snapshot& s) {
-                          if (is_elastic) return sign * (coordinate(self->slid_pose(s), r) - start);
-                          return sign * (evaluate_row<false>(hold[r], s.motion).value - start);
+                        [self, pose_by_rows, r, start, sign, is_elastic](const Snapshot& s) {
+                          return sign * change_of(*self, start, is_elastic ? self->slid_pose(s) : pose_by_rows(s.motion))[r];
                         });
   }
   builder.add_channel("mode", "", {"what the joint does", "", "1 sticks, 2 slips, 3 has come apart"},
@@ -133,13 +140,12 @@ void add_slide_channels(SystemBuilder& builder, const StepLapFriction& friction)
   if (!is_elastic) return;
   static constexpr const char* strains[] = {"strain_x", "strain_y", "strain_angle"};
   for (int r = 0; r < 3; ++r)
-    builder.add_channel(
-        strains[r], r < 2 ? "m" : "rad",
-        {"how far the joint's spring is strained: displacement of the limb's centre of gravity",
-         r == 0   ? "along x of the active part's axes"
-         : r == 1 ? "along y of the active part's axes"
-                  : "positive counter-clockwise"},
-        [self, r](const Snapshot& s) { return coordinate(self->pose_of(s.motion), r) - coordinate(self->slid_pose(s), r); });
+    builder.add_channel(strains[r], r < 2 ? "m" : "rad",
+                        {"how far the joint's spring is strained: displacement of the limb's centre of gravity",
+                         r == 0   ? "along x of the active part's axes"
+                         : r == 1 ? "along y of the active part's axes"
+                                  : "positive counter-clockwise"},
+                        [self, r](const Snapshot& s) { return change_of(*self, self->slid_pose(s), self->pose_of(s.motion))[r]; });
 }
 
 // Returns the interfaces that name this joint. Errors in outlines are reported at the interface.
@@ -255,13 +261,15 @@ double largest_load(const EdgeGroup& group, const std::vector<EdgeCorner>& corne
   return largest;
 }
 
-void add_edge_channels(const StepLapJoint& e, SystemBuilder& builder, const EdgeGroup& group, const std::vector<EdgeCorner>& corners) {
+void add_edge_channels(const StepLapJoint& e, SystemBuilder& builder, const StepLapFriction& friction, const EdgeGroup& group,
+                       const std::vector<EdgeCorner>& corners) {
   for (std::size_t c = 0; c < corners.size(); ++c) {
     const EdgeCorner corner = corners[c];
     const std::string number = "_" + std::to_string(c + 1);
     std::ostringstream at;
     at.precision(4);
-    at << "corner about (" << corner.middle.x() << ", " << corner.middle.y() << ") m from the active part's centre of gravity";
+    const Vec2 middle = friction.in_part(corner.middle);
+    at << "corner about (" << middle.x() << ", " << middle.y() << ") m from the active part's centre of gravity";
     builder.add_channel("edge_force" + number, "N", "with which sheet edges press the limb off the yoke, " + at.str(),
                         [&group, corner](const Snapshot& s) { return bearing_of(group, corner, s.motion).force; });
     for (const int end : {0, 1})
@@ -331,7 +339,7 @@ bool add_edges(const StepLapJoint& e, const Pose& reference, SystemBuilder& buil
   }
   corners.erase(std::remove_if(corners.begin(), corners.end(), [](const EdgeCorner& c) { return c.beds.empty(); }), corners.end());
   if (corners.empty()) return fails("'edge_stiffness' needs the 'clearance' of its step_lap_interface elements");
-  add_edge_channels(e, builder, group, corners);
+  add_edge_channels(e, builder, friction, group, corners);
   return true;
 }
 
@@ -351,6 +359,10 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   }
   auto friction = std::make_unique<StepLapFriction>(e.name, builder.next_friction(), builder.next_friction_row(), std::move(sheets),
                                                     e.mode == "monitor", e.on_apart == "stop");
+  if (const Body* part = builder.model().find_body(e.active_part); part && part->fixed) {
+    const Vec3 pose = part->reference_pose();
+    friction->part_frame = {pose.x(), pose.y(), pose.z()};
+  }
   add_rows(e, builder, *friction);
   const Pose reference = friction->pose_of(&builder.reference(0));
   friction->centre_pressures(reference);

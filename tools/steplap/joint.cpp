@@ -141,7 +141,7 @@ void print_joint(std::ostream& out, const JointView& view, const std::optional<V
   print_capacity(out, view);
   TextTable table({Align::left, Align::left});
   table.set_name("friction");
-  table.add_row({"centre of friction", point_text(view.patch.centroid())});
+  table.add_row({"centre of friction", point_text(view.centre())});
   table.add_row({"radius of gyration", quantity_cell(view.patch.gyration(), "m")});
   out << table;
   print_sharing(out, view);
