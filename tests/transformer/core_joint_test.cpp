@@ -248,6 +248,67 @@ TEST_CASE("two tables that are parts of one stack have yokes each; a table witho
       yoke_steel(model_of("", {"core.core.limbs=[\"front limb\"]", "body.back limb.mass=1", "body.back limb.inertia=1"}), "active part"));
 }
 
+TEST_CASE("tables that name one limb make one joint and one stack, or are refused") {
+  // The second packet, 0.4 m wide, in the same yokes' axes.
+  const auto with = [](const std::string& more, const std::string& joints = "") {
+    std::string second = k_text.substr(k_text.find("[[core]]"));
+    for (const auto& [old, now] : {std::pair{"\"core\"", "\"more\""},
+                                   {"limb_width = 0.5", "limb_width = 0.4"},
+                                   {"core_height = 3.3", "core_height = 3.2"},
+                                   {"yoke_height = 0.5", "yoke_height = 0.4"}})
+      second.replace(second.find(old), std::string(old).size(), now);
+    return joints + second + more;
+  };
+  const std::string edges = "edge_stiffness = 1e11\n";
+  CHECK(refusal(with("")) == "");
+  const Model both = model_of(with(edges, edges));
+  for (const StepLapJoint* joint : all_of<StepLapJoint>(both))
+    CHECK(joint->steel_thickness.value() == doctest::Approx(2.0 * k_sheets * k_sheet).epsilon(1e-14)); // of both stacks
+  CHECK(has(refusal(with("joints = [\"a\", \"b\"]\n")),
+            "limb 'front limb', which core 'core' names, too, is held by joint 'front limb joint' there and by 'a' here"));
+  CHECK(has(refusal(with("edge_stiffness = 2e11\n", edges)), "'edge_stiffness' differs from that of core 'core'"));
+  CHECK(has(refusal(with("contact_stiffness = 2e10\n", "contact_stiffness = 1e10\n")), "'contact_stiffness' differs"));
+  CHECK(has(refusal(with("pressure_loss = 0.2\n", "pressure_loss = 0.1\n")), "'pressure_loss' differs"));
+  CHECK(refusal(with("pressure_loss = 0.1\n", "pressure_loss = 0.1\n")) == "");
+  CHECK(has(refusal(with("centre_of_gravity = \"as_given\"\n")), "has 'centre_of_gravity' = \"of_the_sheets\" there"));
+  CHECK(has(refusal(with("", "transverse_acceleration = \"shock\"\ntransverse_support = \"back\"\n")),
+            "limb 'front limb', which core 'more' names, too, needs its whole stack in one table for 'transverse_acceleration'"));
+  CHECK(has(refusal(with(""), {"body.front limb.mass=6000"}), "contradicts cores 'core' and 'more', whose sheets make it 10823 kg"));
+  std::string middle = with("middle_limbs = [\"front limb\"]\n");
+  const std::string both_outer = "limbs = [\"front limb\", \"back limb\"]";
+  middle.replace(middle.find(both_outer), both_outer.size(), "limbs = [\"back limb\"]");
+  CHECK(has(refusal(middle), "is a middle limb here and an outer limb there"));
+}
+
+// In a saw tooth the last layer of a packet ends farthest from the yoke and the first of the next nearest to it: there the yoke's sheets of
+// the first packet overlap limb sheets of the second, and none of the second packet's yoke sheets those of the first.
+TEST_CASE("the interface between two packets holds the packet whose limb sheets it presses") {
+  const auto grip = [](const std::string& more) { // capacity of each packet's interfaces at both limbs, N
+    std::string text = k_text + more;
+    for (const auto& [old, now] : {std::pair{"limb_width = 0.5\n", ""},
+                                   {"yoke_height = 0.5\n", ""},
+                                   {"stack_depth = 0.585\n", "packets = [[0.5, 0.0085], [0.4, 0.0085]]\nyoke_heights = [0.5, 0.4]\n"}})
+      text.replace(text.find(old), std::string(old).size(), now);
+    const Model model = parse_model(text, "core.toml", transformer_catalog());
+    std::map<std::string, double> sum;
+    for (const StepLapInterface* face : all_of<StepLapInterface>(model)) {
+      OverlapWorkspace workspace;
+      Region region;
+      intersect_exactly(make_outline({face->yoke, {}}), make_outline({face->limb, {}}), {}, workspace, region);
+      sum[face->part] += face->static_friction * face->pressure * face->count * area(region);
+    }
+    return sum;
+  };
+  for (const std::string& by_place : {std::string(), std::string("transverse_acceleration = \"shock\"\ntransverse_support = \"back\"\n"
+                                                                 "transverse_slices = 2\n")}) {
+    CAPTURE(by_place);
+    auto touching = grip(by_place), apart = grip(by_place + "ducts = [[0.0085, 0.005]]\n"); // 30 sheets, and a duct behind them
+    REQUIRE(touching.size() == 2);
+    CHECK(touching["packet 1"] == doctest::Approx(apart["packet 1"]).epsilon(1e-12));
+    CHECK(touching["packet 2"] > 1.01 * apart["packet 2"]); // one wide interface in 29
+  }
+}
+
 TEST_CASE("what bears between a limb and the active part is named beside the joint, with what it bore") {
   const auto assess = [](const std::string& more) {
     const Model model = model_of(more + "[[marker]]\nname = \"plate end\"\nbody = \"active part\"\nat = [1.25, 0.0]\n"

@@ -9,9 +9,11 @@
 #include "mbd/system/system.h"
 #include "transformer/catalog.h"
 #include "transformer/core/book.h"
+#include "transformer/core/plausible.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace steplap;
@@ -185,6 +187,11 @@ TEST_CASE("packets of a core share the joints") {
   const Model model = model_of(k_shape + k_counted + second);
   CHECK(compile(model)->frictions.size() == 2);
   CHECK(interfaces_of(model).size() == 8);
+  // What each weighs is not known, and so no packet is judged alone: a run leaves that open.
+  const std::vector<CoreRemark> remarks = implausible_cores(model);
+  CHECK(std::count_if(remarks.begin(), remarks.end(), [](const CoreRemark& remark) {
+          return has(remark.text, "2 [[core]] tables name it, and 'overlap' of core 'core' does not say what its part");
+        }) == 2);
   const double both = 2 * 0.25 * 0.01 * (1165 * 1e5 * std::sqrt(0.5) + 300 * 5e4 * 0.4 * std::sqrt(2.0));
   CHECK(patch_of(model).force() == doctest::Approx(both).epsilon(1e-12));
 }
@@ -471,6 +478,52 @@ TEST_CASE("stepped sections, ducts and holes that cannot be are refused, with th
   CHECK(has(with("bolt_holes = [[0.0, 0.0], [0.0, 0.02]]\nbolt_hole_diameter = 0.02\n"), "bolt holes 1 and 2 run into each other"));
   CHECK(has(with("bolt_holes = [[0.19, 0.19]]\nbolt_hole_diameter = 0.12\n"), "cuts a sheet in two"));
   CHECK(has(refusal(k_shape + k_counted + "yoke_heights = [0.5]\n"), "'yoke_heights' is for 'packets'"));
+}
+
+TEST_CASE("limbs that cannot stand between two straight yokes are refused, where they are named") {
+  const std::string middle = "middle_limbs = [\"middle limb\"]\n", counted = k_shape + k_overlaps;
+  const auto with_middle = [&](const char* place) {
+    return refusal(counted + middle + "[[body]]\nname = \"middle limb\"\nmass = 9000\ninertia = 6500\nposition = " + place + "\n");
+  };
+  CHECK(with_middle("[0.0, 1.95]") == "");
+  CHECK(with_middle("[0.4, 1.95]") == ""); // limbs of a core of five that are no bodies may stand elsewhere
+  CHECK(has(with_middle("[2.0, 1.95]"), "middle limb 'middle limb' stands outside outer limb 'front limb', where the yokes end"));
+  CHECK(has(with_middle("[-2.0, 1.95]"), "middle limb 'middle limb' stands outside outer limb 'back limb'"));
+  CHECK(has(with_middle("[0.0, 2.15]"), "limbs 'front limb' and 'middle limb' stand at heights that differ by 0.2 m"));
+  CHECK(has(refusal(counted, {"body.back limb.position=[2.5,1.95]"}),
+            "limbs 'front limb' and 'back limb' are both outer limbs on one side of the middle of 'active part'"));
+  CHECK(has(refusal(counted, {"body.back limb.position=[-1.25,1.85]"}), "stand at heights that differ by 0.1 m"));
+  CHECK(refusal(counted, {"body.back limb.position=[-1.25,1.94]"}) == "");
+  const std::string more = "[[body]]\nname = \"A\"\nmass = 9000\ninertia = 6500\nposition = [2.5, 1.95]\n"
+                           "[[body]]\nname = \"B\"\nmass = 9000\ninertia = 6500\nposition = [-2.5, 1.95]\n";
+  const std::string four = refusal(counted + more, {"core.core.limbs=[\"front limb\",\"back limb\",\"A\",\"B\"]"});
+  CHECK(has(four, "limbs 'front limb' and 'A' are both outer limbs"));
+  CHECK(has(four, "limbs 'back limb' and 'B' are both outer limbs"));
+}
+
+TEST_CASE("limbs that may be meant otherwise are told of: turned against the yokes, beyond the yokes of another table") {
+  const auto said = [](const Model& model) {
+    std::string all;
+    for (const CoreRemark& remark : implausible_cores(model))
+      if (!remark.is_note) all += remark.text + "\n";
+    return all;
+  };
+  const std::string turned = "'angle' differs by 180° from that of 'active part'";
+  CHECK(!has(said(model_of(k_shape + k_overlaps)), "'angle'"));
+  CHECK(has(said(model_of(k_shape + k_overlaps, {"body.back limb.angle=180 degree"})), "body 'back limb': " + turned));
+  CHECK(!has(said(model_of(k_shape + k_overlaps, {"body.back limb.angle=360 degree"})), "'angle'")); // the same direction
+  const auto beyond = [&](double x) {
+    std::string more = k_shape + k_overlaps;
+    more.replace(more.find("name = \"core\""), 13, "name = \"more\"");
+    more.replace(more.find("[\"front limb\", \"back limb\"]"), 27, "[\"A\", \"B\"]");
+    for (const auto& [name, place] : {std::pair{"A", x}, {"B", -x}})
+      more +=
+          "[[body]]\nname = \"" + std::string(name) + "\"\nmass = 9000\ninertia = 6500\nposition = [" + std::to_string(place) + ", 1.95]\n";
+    return said(model_of(k_shape + k_overlaps + more));
+  };
+  CHECK(has(beyond(2.5), "core 'core': its yokes end at outer limb 'front limb', and limb 'A' of core 'more', which has the same yokes"));
+  CHECK(has(beyond(0.6), "core 'more': its yokes end at outer limb 'A', and limb 'front limb' of core 'core'"));
+  CHECK(beyond(1.25) == ""); // a second core behind the first
 }
 
 TEST_CASE("all that is wrong with a core is said at once") {

@@ -156,15 +156,19 @@ void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geom
   print_transverse(out, core, geometry, corners.front());
 }
 
-void print_steel(std::ostream& out, const Core& core, const CoreGeometry& geometry, std::size_t limb, const Model& model) {
-  const Body &body = *model.find_body(core.all_limbs()[limb]), &part = *model.find_body(core.active_part);
-  const LimbSteel steel = geometry.limb_steel(core.is_middle(limb), side_of_limb(core, body, part));
+void print_steel(std::ostream& out, const Core& core, std::size_t limb, const Model& model) {
+  const Body& body = *model.find_body(core.all_limbs()[limb]);
+  const std::optional<LimbSteel> known = steel_of(model, body.name);
+  const LimbSteel steel = known.value_or(LimbSteel());
+  const bool is_shared = cores_of(model, body.name).size() > 1;
   TextTable table({Align::left, Align::right, Align::right});
-  table.set_head("steel", {"", "of the sheets", "of the body"}, {"what", "of the sheets", "of the body"});
+  table.set_head("steel", {"", is_shared ? "of the sheets in all tables" : "of the sheets", "of the body"},
+                 {"what", "of the sheets", "of the body"});
   const auto inertia = [](double value) { return Cell(quantity_text(value, "kg m²"), value, "kg m^2"); };
   table.add_row({"mass", steel.mass > 0.0 ? quantity_cell(steel.mass, "kg") : Cell("-"), quantity_cell(body.mass, "kg")});
   table.add_row({"inertia", steel.mass > 0.0 ? inertia(steel.inertia) : Cell("-"), inertia(body.inertia)});
-  table.add_row({"centre of gravity, off the axis", quantity_cell(steel.centre.x(), "m", 1.0), quantity_cell(body.cg.x(), "m", 1.0)});
+  table.add_row({"centre of gravity, off the axis", known ? quantity_cell(steel.centre.x(), "m", 1.0) : Cell("-"),
+                 quantity_cell(body.cg.x(), "m", 1.0)});
   out << table;
 }
 
@@ -207,7 +211,7 @@ void print_core(std::ostream& out, const Core& core, const Model& model) {
     out << About{core.joint_name(i)} << "\n"
         << core.joint_name(i) << ": '" << core.all_limbs()[i] << "'" << (core.is_middle(i) ? ", T-joint" : "") << "\n";
     print_corners(out, core, geometry, i, model);
-    print_steel(out, core, geometry, i, model);
+    print_steel(out, core, i, model);
   }
 }
 

@@ -23,6 +23,13 @@ constexpr double k_least_steel = 0.8, k_most_steel = 1.6;
 // gravity.
 Vec2 middle_in_frame(const Core& core, const Body& limb) { return core.has_strips() ? limb.cg : Vec2(Vec2::Zero()); }
 
+// Returns true if the fields are within their ranges and consistent, so that geometry may be computed from the table.
+bool is_sound(const Core& core, const Model& model) {
+  std::vector<Diagnostic> problems;
+  FieldChecker(model, problems).check(core_kind().fields, &core, "", [&core](const std::string&) { return std::optional(core.where); });
+  return problems.empty() && check_dimensions(core).empty();
+}
+
 // Expands one [[core]]; collects all errors before it reports them.
 class CoreBuilder {
 public:
@@ -38,7 +45,7 @@ public:
     const CoreGeometry geometry(core_);
     try {
       for (std::size_t i = 0; i < limbs_.size(); ++i) add_joint(i, geometry);
-      for (std::size_t i = 0; i < limbs_.size(); ++i) give_steel(i, geometry);
+      for (std::size_t i = 0; i < limbs_.size(); ++i) give_steel(i);
     } catch (const PolygonError& wrong) {
       error(wrong.what(), "bolt_holes");
     }
@@ -69,20 +76,23 @@ private:
   void check_names();
   void check_limb(std::size_t i, const Body& active_part);
   void check_distance(std::size_t i, std::size_t j, const Body& active_part);
+  void check_row(const Body& active_part);
+  void check_other_tables(std::size_t i);
   void check_joint(const std::string& name, const std::string& limb);
   void check_settings(const StepLapJoint& joint);
   [[nodiscard]] bool is_given(const std::string& field) const { return core_.places.count(field) > 0; }
 
   void add_joint(std::size_t i, const CoreGeometry& geometry);
-  void give_settings(StepLapJoint& joint, const CoreGeometry& geometry) const;
+  void give_settings(StepLapJoint& joint) const;
   void add_interface(std::size_t i, const CoreCorner& corner, const Lap& lap, const CoreGeometry& geometry);
   void check_packets(std::size_t i, const CoreCorner& corner, const CoreGeometry& geometry);
   void find_parts(std::size_t i, const CoreGeometry& geometry);
   void press(StepLapInterface& face, std::size_t i, const CoreCorner& corner, const Lap& lap, const CoreGeometry& geometry);
   void refuse_repetition(const StepLapInterface& face);
-  void give_steel(std::size_t i, const CoreGeometry& geometry);
+  void give_steel(std::size_t i);
   void check_yokes();
   void check_steel(const Body& body, const char* field, double given, double steel, const std::string& unit);
+  [[nodiscard]] std::string names_of_tables(const std::string& limb) const;
 
   [[nodiscard]] std::vector<Vec2> limb_corners(std::size_t i, const CoreGeometry& geometry) const;
   void set_limb_outlines(const CoreGeometry& geometry);
@@ -92,6 +102,7 @@ private:
   Model& model_;
   std::vector<std::string> limbs_;  ///< outer limbs, then middle ones
   std::vector<double> part_shares_; ///< fraction of the present limb's steel in each packet; empty: packets are not distinguished
+  bool is_shared_ = false;          ///< several tables name the present limb
   std::vector<Diagnostic> problems_;
 };
 
@@ -113,11 +124,15 @@ void CoreBuilder::check_names() {
       if (limbs_[j] == limbs_[i]) error("names limb '" + limbs_[i] + "' twice", list_of(i));
       else check_distance(i, j, *active_part);
   }
+  check_row(*active_part);
   if (!core_.joints.empty() && core_.joints.size() != limbs_.size())
     return error("'joints' must name one joint for each of the " + std::to_string(limbs_.size()) + " limbs, got " +
                      std::to_string(core_.joints.size()),
                  "joints");
-  for (std::size_t i = 0; i < limbs_.size(); ++i) check_joint(core_.joint_name(i), limbs_[i]);
+  for (std::size_t i = 0; i < limbs_.size(); ++i) {
+    check_joint(core_.joint_name(i), limbs_[i]);
+    check_other_tables(i);
+  }
 }
 
 void CoreBuilder::check_limb(std::size_t i, const Body& active_part) {
@@ -149,6 +164,70 @@ void CoreBuilder::check_distance(std::size_t i, std::size_t j, const Body& activ
           core_.packets.empty() ? "limb_width" : "packets");
 }
 
+// Checks that the limbs of a table can stand between the same two straight yokes: each ends at one outer limb on either side, with the
+// middle limbs between them.
+void CoreBuilder::check_row(const Body& active_part) {
+  constexpr double k_level = 0.01; // largest difference of heights, of the height of the core: more is not an inaccuracy of a drawing
+  struct Standing {
+    std::size_t limb;
+    Vec2 middle;
+  };
+  std::vector<Standing> all;
+  for (std::size_t i = 0; i < limbs_.size(); ++i)
+    if (const Body* body = model_.find_body(limbs_[i]); body && body != &active_part)
+      all.push_back({i, middle_of_limb(core_, *body, active_part)});
+  for (const Standing& a : all)
+    for (const Standing& b : all) {
+      const bool is_one_side = (a.middle.x() > 0.0) == (b.middle.x() > 0.0);
+      const std::string names = "limbs '" + limbs_[a.limb] + "' and '" + limbs_[b.limb] + "' ";
+      if (const double apart = std::abs(a.middle.y() - b.middle.y()); a.limb < b.limb && apart > k_level * core_.core_height)
+        error(names + "stand at heights that differ by " + number_text(std::round(1e3 * apart) / 1e3) +
+                  " m ('position' of the bodies, in the axes of '" + core_.active_part +
+                  "'): the middles of all limbs lie at half the height of the core",
+              list_of(b.limb));
+      if (core_.is_middle(a.limb) || !is_one_side || a.limb == b.limb) continue;
+      if (!core_.is_middle(b.limb) && a.limb < b.limb)
+        error(names + "are both outer limbs on one side of the middle of '" + core_.active_part +
+                  "', where the yokes end at one: name those between the outermost in 'middle_limbs'; another core has an active part of "
+                  "its own",
+              "limbs");
+      if (core_.is_middle(b.limb) && std::abs(b.middle.x()) > std::abs(a.middle.x()))
+        error("middle limb '" + limbs_[b.limb] + "' stands outside outer limb '" + limbs_[a.limb] +
+                  "', where the yokes end ('position' of the bodies): the outermost limb of a side belongs in 'limbs', those between in "
+                  "'middle_limbs'",
+              "middle_limbs");
+    }
+}
+
+// Checks that another table that names the same limb can describe a part of the same stack.
+void CoreBuilder::check_other_tables(std::size_t i) {
+  bool is_before = true; // each contradiction is reported once, by the later table
+  for (const CoreOfLimb& other : cores_of(model_, limbs_[i])) {
+    if (other.core->name == core_.name) {
+      is_before = false;
+      continue;
+    }
+    const std::string limb = "limb '" + limbs_[i] + "', which core '" + other.core->name + "' names, too, ";
+    if (!core_.transverse_acceleration.empty())
+      error(limb + "needs its whole stack in one table for 'transverse_acceleration': a packet is pressed by all that leans on it. Give "
+                   "all its 'packets' in one table",
+            "transverse_acceleration");
+    if (!is_before) continue;
+    if (other.core->is_middle(other.limb) != core_.is_middle(i))
+      error(limb + "is " + (core_.is_middle(i) ? "a middle limb here and an outer" : "an outer limb here and a middle") + " limb there",
+            list_of(i));
+    if (other.core->joints.empty() || other.core->joints.size() == other.core->all_limbs().size())
+      if (const std::string joint = other.core->joint_name(other.limb); joint != core_.joint_name(i))
+        error(limb + "is held by joint '" + joint + "' there and by '" + core_.joint_name(i) +
+                  "' here: a limb has one joint. Give it the same name in the 'joints' of both",
+              "joints");
+    if (other.core->centre_of_gravity != core_.centre_of_gravity)
+      error(limb + "has 'centre_of_gravity' = \"" + other.core->centre_of_gravity + "\" there and \"" + core_.centre_of_gravity +
+                "\" here: give both the same",
+            "centre_of_gravity");
+  }
+}
+
 void CoreBuilder::check_joint(const std::string& name, const std::string& limb) {
   if (name.empty()) return error("'joints': a joint needs a name", "joints");
   const Element* element = find_element(name);
@@ -164,8 +243,18 @@ void CoreBuilder::check_joint(const std::string& name, const std::string& limb) 
 
 // Checks that the core's settings for joints agree with those of a joint that the model declares separately.
 void CoreBuilder::check_settings(const StepLapJoint& joint) {
+  const std::vector<CoreOfLimb> tables = cores_of(model_, joint.limb);
+  const auto maker = std::find_if(tables.begin(), tables.end(), [&](const CoreOfLimb& table) {
+    const Location& where = table.core->where;
+    return where.line > 0 && where.file == joint.where.file && where.line == joint.where.line && where.column == joint.where.column;
+  });
   const auto check = [&](const char* field, bool is_same) {
-    if (is_given(field) && !is_same)
+    if (!is_given(field) || is_same) return;
+    if (maker != tables.end())
+      error("'" + std::string(field) + "' differs from that of core '" + maker->core->name + "', and both describe joint '" + joint.name +
+                "': give both tables the same",
+            field);
+    else
       error("'" + std::string(field) + "' is for joints that this table adds; step_lap_joint '" + joint.name +
                 "' exists already with another: set it there, and leave it out here",
             field);
@@ -174,20 +263,26 @@ void CoreBuilder::check_settings(const StepLapJoint& joint) {
   check("on_apart", core_.on_apart == joint.on_apart);
   check("least_margin", core_.least_margin == joint.least_margin);
   check("most_slide", core_.most_slide == joint.most_slide);
-  // A declared joint has its own settings. Settings of the core that the joint lacks would be ignored, so they are an error.
-  const auto check_said = [&](const char* field, bool is_said) {
+  // Two tables that make a joint together must agree. A declared joint has its own settings. Settings of the core that the joint lacks
+  // would be ignored, so they are an error.
+  const auto check_said = [&](const char* field, bool is_said, bool is_same) {
+    if (maker != tables.end()) return check(field, is_same);
     if (is_given(field) && !is_said)
       error("'" + std::string(field) + "' is for joints that this table adds; step_lap_joint '" + joint.name +
                 "' exists already and does not say its own: give it there, too",
             field);
   };
-  check_said("tangential_stiffness", is_elastic(joint));
-  check_said("contact_stiffness", is_elastic(joint));
-  check_said("edge_stiffness", joint.edge_stiffness.has_value());
-  check_said("allowed_line_load", joint.allowed_line_load.has_value());
-  check_said("pressure_signal", !joint.pressure_signal.empty());
-  check_said("pressure_loss", joint.pressure_loss != 0.0 || core_.pressure_loss == 0.0);
-  check_said("transverse_acceleration", !joint.transverse_acceleration.empty());
+  check_said("tangential_stiffness", is_elastic(joint), core_.tangential_stiffness == joint.tangential_stiffness);
+  check_said("contact_stiffness", is_elastic(joint), core_.contact_stiffness == joint.contact_stiffness);
+  check_said("edge_stiffness", joint.edge_stiffness.has_value(), core_.edge_stiffness == joint.edge_stiffness);
+  check_said("allowed_line_load", joint.allowed_line_load.has_value(), core_.allowed_line_load == joint.allowed_line_load);
+  check_said("pressure_signal", !joint.pressure_signal.empty(), core_.pressure_signal == joint.pressure_signal);
+  check_said("pressure_loss", joint.pressure_loss != 0.0 || core_.pressure_loss == 0.0, core_.pressure_loss == joint.pressure_loss);
+  check_said("transverse_acceleration", !joint.transverse_acceleration.empty(), true); // several tables: check_other_tables
+  if (maker != tables.end()) {
+    check("shear_modulus", core_.shear_modulus == joint.shear_modulus);
+    check("sheet_thickness", !joint.shear_modulus || core_.sheet_thickness == joint.sheet_thickness);
+  }
 }
 
 // --- additions to the model ----------------------------------------------------------------------------
@@ -203,7 +298,7 @@ void CoreBuilder::add_joint(std::size_t i, const CoreGeometry& geometry) {
     joint->on_apart = core_.on_apart;
     joint->least_margin = core_.least_margin.value_or(joint->least_margin);
     joint->most_slide = core_.most_slide.value_or(joint->most_slide);
-    give_settings(*joint, geometry);
+    give_settings(*joint);
     model_.elements.push_back({&step_lap_joint_kind(), joint});
   }
   const double reach = std::abs(middle_of_limb(core_, limb(i), active_part()).x());
@@ -228,24 +323,37 @@ void CoreBuilder::check_packets(std::size_t i, const CoreCorner& corner, const C
   }
 }
 
-// Computes the fraction of a limb's steel in each packet, if there are several: each packet must then be held separately. If several tables
-// describe the limb, the fractions of its total steel are unknown here.
+// Computes the fraction of a limb's steel in each packet, if there are several: each packet must then be held separately.
 void CoreBuilder::find_parts(std::size_t i, const CoreGeometry& geometry) {
-  part_shares_.clear();
-  if (count_cores_of(model_, limbs_[i]) > 1) return;
-  part_shares_ = geometry.packet_shares(core_.is_middle(i), side_of_limb(core_, limb(i), active_part()));
-  if (std::count_if(part_shares_.begin(), part_shares_.end(), [](double share) { return share > 0.0; }) < 2) part_shares_.clear();
+  const double side = side_of_limb(core_, limb(i), active_part());
+  part_shares_ = geometry.packet_shares(core_.is_middle(i), side);
+  is_shared_ = cores_of(model_, limbs_[i]).size() > 1;
+  if (!is_shared_) {
+    if (std::count_if(part_shares_.begin(), part_shares_.end(), [](double share) { return share > 0.0; }) < 2) part_shares_.clear();
+    return;
+  }
+  const std::optional<LimbSteel> steel = steel_of(model_, limbs_[i]);
+  if (!steel) return part_shares_.clear(); // reported as a remark (plausible.cpp)
+  const double of_table = geometry.limb_steel(core_.is_middle(i), side).mass / steel->mass;
+  for (double& share : part_shares_) share *= of_table;
 }
 
-void CoreBuilder::give_settings(StepLapJoint& joint, const CoreGeometry& geometry) const {
+void CoreBuilder::give_settings(StepLapJoint& joint) const {
   joint.tangential_stiffness = core_.tangential_stiffness;
   joint.contact_stiffness = core_.contact_stiffness;
   joint.shear_modulus = core_.shear_modulus;
   if (core_.shear_modulus) joint.sheet_thickness = core_.sheet_thickness;
   joint.edge_stiffness = core_.edge_stiffness;
   joint.allowed_line_load = core_.allowed_line_load;
-  if (core_.edge_stiffness && !core_.is_counted())
-    joint.steel_thickness = static_cast<double>(sheets_in(geometry.stack())) * geometry.stack().sheet_thickness;
+  const std::vector<CoreOfLimb> tables = cores_of(model_, joint.limb);
+  if (core_.edge_stiffness &&
+      std::all_of(tables.begin(), tables.end(), [&](const CoreOfLimb& t) { return is_sound(*t.core, model_) && !t.core->is_counted(); })) {
+    joint.steel_thickness = 0.0;
+    for (const CoreOfLimb& table : tables) {
+      const Stack stack = stack_of(*table.core);
+      *joint.steel_thickness += static_cast<double>(sheets_in(stack)) * stack.sheet_thickness;
+    }
+  }
   joint.pressure_signal = core_.pressure_signal;
   joint.pressure_loss = core_.pressure_loss;
   joint.transverse_acceleration = core_.transverse_acceleration;
@@ -293,7 +401,7 @@ void CoreBuilder::add_interface(std::size_t i, const CoreCorner& corner, const L
   e->kinetic_friction = !corner.is_top && core_.bottom_kinetic_friction ? core_.bottom_kinetic_friction : core_.kinetic_friction;
   if (!part_shares_.empty()) {
     const std::size_t packet = geometry.packet_of(lap);
-    e->part = "packet " + std::to_string(packet + 1);
+    e->part = (is_shared_ ? core_.name + ", packet " : "packet ") + std::to_string(packet + 1);
     e->part_share = part_shares_[packet];
   }
   refuse_repetition(*e);
@@ -321,28 +429,39 @@ void CoreBuilder::refuse_repetition(const StepLapInterface& face) {
 
 // --- steel of the limbs -----------------------------------------------------------------------------------
 
-void CoreBuilder::check_steel(const Body& body, const char* field, double given, double steel, const std::string& unit) {
-  if (given >= k_least_steel * steel && given <= k_most_steel * steel) return;
-  problems_.push_back({body.where, "'" + std::string(field) + "' of body '" + body.name + "', " + number_text(given) + " " + unit +
-                                       ", contradicts core '" + core_.name + "', whose sheets make it " + number_text(std::round(steel)) +
-                                       " " + unit + " ('stack_depth' or 'packets', 'stacking_factor', 'density'): leave '" + field +
-                                       "' out to take it from the core"});
+// Returns "core 'a'", or "cores 'a' and 'b'".
+std::string CoreBuilder::names_of_tables(const std::string& limb) const {
+  const std::vector<CoreOfLimb> tables = cores_of(model_, limb);
+  std::string names = tables.size() > 1 ? "cores " : "core ";
+  for (std::size_t i = 0; i < tables.size(); ++i)
+    names += (i == 0 ? "'" : i + 1 == tables.size() ? " and '" : ", '") + tables[i].core->name + "'";
+  return names;
 }
 
-void CoreBuilder::give_steel(std::size_t i, const CoreGeometry& geometry) {
+void CoreBuilder::check_steel(const Body& body, const char* field, double given, double steel, const std::string& unit) {
+  if (given >= k_least_steel * steel && given <= k_most_steel * steel) return;
+  problems_.push_back(
+      {body.where, "'" + std::string(field) + "' of body '" + body.name + "', " + number_text(given) + " " + unit + ", contradicts " +
+                       names_of_tables(body.name) + ", whose sheets make it " + number_text(std::round(steel)) + " " + unit +
+                       " ('stack_depth' or 'packets', 'stacking_factor', 'density'): leave '" + field + "' out to take it from the core"});
+}
+
+void CoreBuilder::give_steel(std::size_t i) {
   Body* body = nullptr;
   for (Body& candidate : model_.bodies)
     if (candidate.name == limbs_[i]) body = &candidate;
-  if (core_.has_strips() || count_cores_of(model_, limbs_[i]) > 1 || body->fixed) return;
-  const LimbSteel steel = geometry.limb_steel(core_.is_middle(i), side_of_limb(core_, *body, active_part()));
-  if (steel.mass > 0.0) {
-    if (body->mass == 0.0) body->mass = steel.mass;
-    else check_steel(*body, "mass", body->mass, steel.mass, "kg");
-    if (body->inertia == 0.0) body->inertia = steel.inertia * body->mass / steel.mass;
-    else check_steel(*body, "inertia", body->inertia, steel.inertia, "kg m²");
+  // Of several tables, the last one gives the steel of all.
+  if (core_.has_strips() || body->fixed || cores_of(model_, limbs_[i]).back().core->name != core_.name) return;
+  const std::optional<LimbSteel> steel = steel_of(model_, limbs_[i]);
+  if (!steel) return;
+  if (steel->mass > 0.0) {
+    if (body->mass == 0.0) body->mass = steel->mass;
+    else check_steel(*body, "mass", body->mass, steel->mass, "kg");
+    if (body->inertia == 0.0) body->inertia = steel->inertia * body->mass / steel->mass;
+    else check_steel(*body, "inertia", body->inertia, steel->inertia, "kg m²");
   }
   if (core_.centre_of_gravity == "of_the_sheets" && body->cg == Vec2(Vec2::Zero()))
-    body->cg = rotated(steel.centre, active_part().angle - body->angle);
+    body->cg = rotated(steel->centre, active_part().angle - body->angle);
 }
 
 // Checks the mass of the active part, which contains the yokes and more.
@@ -440,7 +559,7 @@ std::vector<LimbPlace> places_of_limbs(const Core& core, const Model& model) {
 namespace {
 
 // Returns true if both tables can describe the same yokes: equal numbers of sheets of equal heights.
-bool has_same_yokes(const Core& a, const Core& b) {
+bool has_equal_yokes(const Core& a, const Core& b) {
   const Stack one = stack_of(a), two = stack_of(b);
   const auto is_same = [](const Packet& p, const Packet& q) { return p.yoke_height == q.yoke_height && p.depth == q.depth; };
   return a.core_height == b.core_height && a.density == b.density && a.yoke_steps == b.yoke_steps &&
@@ -475,29 +594,20 @@ struct Yokes {
   }
 };
 
-// Returns true if all fields are within their ranges, so that dimensions may be computed from the table.
-bool is_within_ranges(const TableEntry& entry, const Model& model) {
-  std::vector<Diagnostic> problems;
-  FieldChecker(model, problems).check(entry.kind->fields, entry.table.get(), "", [&entry](const std::string&) {
-    return std::optional(entry.table->where);
-  });
-  return problems.empty();
-}
-
 } // namespace
+
+bool share_yokes(const Core& a, const Core& b) { return a.active_part == b.active_part && has_equal_yokes(a, b) && !shares_limb(a, b); }
 
 std::optional<double> yoke_steel(const Model& model, const std::string& active_part) {
   std::vector<Yokes> all;
-  for (const TableEntry& entry : model.tables) {
-    const auto* core = dynamic_cast<const Core*>(entry.table.get());
-    if (!core || core->active_part != active_part) continue;
+  for (const Core* core : tables_of<Core>(model)) {
+    if (core->active_part != active_part) continue;
     const std::vector<std::string> names = core->all_limbs();
     const auto is_body = [&](const std::string& name) { return model.find_body(name) != nullptr; };
     if (!is_body(active_part) || !std::all_of(names.begin(), names.end(), is_body)) return {};
-    if (core->is_counted() || !is_within_ranges(entry, model) || !check_dimensions(*core).empty()) return {};
+    if (core->is_counted() || !is_sound(*core, model)) return {};
     const auto is_own = [&](const Yokes& yokes) {
-      return has_same_yokes(*yokes.cores.front(), *core) &&
-             std::none_of(yokes.cores.begin(), yokes.cores.end(), [&](const Core* other) { return shares_limb(*other, *core); });
+      return std::all_of(yokes.cores.begin(), yokes.cores.end(), [&](const Core* other) { return share_yokes(*other, *core); });
     };
     auto yokes = std::find_if(all.begin(), all.end(), is_own);
     if (yokes == all.end()) yokes = all.insert(all.end(), Yokes());
@@ -514,13 +624,39 @@ std::optional<double> yoke_steel(const Model& model, const std::string& active_p
   return mass;
 }
 
-std::size_t count_cores_of(const Model& model, const std::string& limb) {
-  std::size_t count = 0;
+std::vector<CoreOfLimb> cores_of(const Model& model, const std::string& limb) {
+  std::vector<CoreOfLimb> found;
   for (const Core* core : tables_of<Core>(model)) {
     const std::vector<std::string> limbs = core->all_limbs();
-    if (std::find(limbs.begin(), limbs.end(), limb) != limbs.end()) ++count;
+    if (const auto at = std::find(limbs.begin(), limbs.end(), limb); at != limbs.end())
+      found.push_back({core, static_cast<std::size_t>(at - limbs.begin())});
   }
-  return count;
+  return found;
+}
+
+std::optional<LimbSteel> steel_of(const Model& model, const std::string& limb) {
+  const std::vector<CoreOfLimb> tables = cores_of(model, limb);
+  LimbSteel all;
+  for (const CoreOfLimb& table : tables) {
+    if (tables.size() > 1 && (table.core->is_counted() || !is_sound(*table.core, model))) return {};
+    const Body *body = model.find_body(limb), *part = model.find_body(table.core->active_part);
+    if (!body || !part) return {};
+    LimbSteel own;
+    try {
+      own = CoreGeometry(*table.core).limb_steel(table.core->is_middle(table.limb), side_of_limb(*table.core, *body, *part));
+    } catch (const PolygonError&) {
+      if (tables.size() == 1) throw;
+      return {}; // reported by the table with the bolt hole
+    }
+    if (tables.size() == 1) return own;
+    all.mass += own.mass;
+    all.centre += own.mass * own.centre;
+    all.inertia += own.inertia + own.mass * own.centre.squaredNorm();
+  }
+  if (!(all.mass > 0.0)) return {};
+  all.centre /= all.mass;
+  all.inertia -= all.mass * all.centre.squaredNorm();
+  return all;
 }
 
 } // namespace steplap

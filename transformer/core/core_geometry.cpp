@@ -233,7 +233,7 @@ void CoreGeometry::add_built(const End& end, std::vector<Lap>& laps) const {
     const std::string one = std::to_string((stack_.is_by_place ? front : first) + 1),
                       two = std::to_string((stack_.is_by_place ? front + 1 : second) + 1);
     found.name = !is_one_packet ? "packets " + one + " and " + two + ", " + k : own.empty() ? k : own + ", " + k;
-    found.packet = first;
+    found.packet = limb.packet;
     found.is_between = !is_one_packet;
     found.zone = pair.zone;
     found.before = pair.before;
@@ -315,6 +315,13 @@ std::vector<CoreCorner> CoreGeometry::corners(bool is_middle, double side, doubl
       for (const double half : {1.0, -1.0}) all.push_back(corner({true, half, level, reach}));
   }
   return all;
+}
+
+// Where two packets meet, each of the two laps holds the packet of its limb sheet.
+std::size_t CoreGeometry::packet_of(const Lap& lap) const {
+  if (!stack_.is_by_place) return lap.packet;
+  const std::size_t front = lap.zone / static_cast<std::size_t>(stack_.slices);
+  return lap.is_between && lap.packet != likeness(stack_, front) ? front + 1 : front;
 }
 
 LimbSteel CoreGeometry::limb_steel(bool is_middle, double side) const {

@@ -23,7 +23,7 @@ struct Lap {
   double count = 0.0;         ///< number of such interfaces in the stack
   double area = 0.0;          ///< area of one interface, m²
   double pressure = 1.0;      ///< pressure relative to that of the corner
-  std::size_t packet = 0;     ///< index of the packet of both layers; of the first one if `is_between`
+  std::size_t packet = 0;     ///< index of the limb sheet's packet, of several equal ones the first
   bool is_between = false;    ///< the layers belong to two packets
   std::size_t zone = 0;       ///< zone in a stack by place (stack.h)
   double before = 0.0;        ///< in a stack by place: mean number of sheets in front of the interface
@@ -92,10 +92,8 @@ public:
   /// Returns the fraction of a limb's steel in each packet. If the stack is not by place, the first of several equal packets gets the
   /// fraction of all of them, and the others zero. Empty if the stack is unknown.
   [[nodiscard]] std::vector<double> packet_shares(bool is_middle, double side) const;
-  /// Returns the index of the packet that an interface holds.
-  [[nodiscard]] std::size_t packet_of(const Lap& lap) const {
-    return stack_.is_by_place ? lap.zone / static_cast<std::size_t>(stack_.slices) : lap.packet;
-  }
+  /// Returns the index of the packet that an interface holds: that of its limb sheet.
+  [[nodiscard]] std::size_t packet_of(const Lap& lap) const;
   /// Returns the mass of both yokes from x = 0 to the outer face of an outer limb, as if there were no limb, kg; negative if that face is
   /// on the other side of x = 0. Zero if the stack is unknown (counted overlaps).
   [[nodiscard]] double yoke_strip(const LimbPlace& outer) const;

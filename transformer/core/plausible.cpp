@@ -44,7 +44,9 @@ public:
     check_packets();
     check_shape();
     note_mitre();
-    if (!core_.has_strips()) check_steel();
+    check_angles();
+    check_rows();
+    check_steel();
   }
 
 private:
@@ -134,30 +136,70 @@ private:
                      true});
   }
 
-  void check_steel() {
-    const CoreGeometry geometry(core_);
-    const std::vector<std::string> limbs = core_.all_limbs();
-    for (std::size_t i = 0; i < limbs.size(); ++i) {
-      if (count_cores_of(model_, limbs[i]) > 1) continue;
-      const Body &limb = *model_.find_body(limbs[i]), &part = *model_.find_body(core_.active_part);
-      const LimbSteel steel = geometry.limb_steel(core_.is_middle(i), side_of_limb(core_, limb, part));
-      const std::string body = "body '" + limb.name + "'";
-      if (steel.mass > 0.0) {
-        compare(limb.where, body + ": 'mass'", limb.mass, steel.mass, k_light, k_heavy, "kg");
-        compare(limb.where, body + ": 'inertia'", limb.inertia, steel.inertia, k_small, k_large, "kg m²");
-      }
-      const Vec2 centre = rotated(steel.centre, part.angle - limb.angle);
-      if (core_.centre_of_gravity == "of_the_sheets" && (limb.cg - centre).norm() > k_off_centre)
-        said_.push_back({limb.where, body + ": 'cg' = [" + number_text(limb.cg.x()) + ", " + number_text(limb.cg.y()) +
-                                         "] m, the sheets of core '" + core_.name + "' have theirs at [" + rounded_text(centre.x()) + ", " +
-                                         rounded_text(centre.y()) + "] m from the middle of the limb"});
+  // The sheets of a limb lie along the axes of the active part, whatever the angle of its body.
+  void check_angles() {
+    for (const std::string& name : core_.all_limbs()) {
+      const Body &limb = *model_.find_body(name), &part = *model_.find_body(core_.active_part);
+      const double turn = std::remainder(limb.angle - part.angle, 2.0 * std::numbers::pi);
+      if (std::abs(turn) <= k_same_angle) continue;
+      said_.push_back({limb.where, "body '" + name + "': 'angle' differs by " + degrees_text(turn) + " from that of '" + core_.active_part +
+                                       "', and the sheets of core '" + core_.name +
+                                       "' lie along the axes of that all the same: give both the same 'angle'"});
     }
   }
 
-  void compare(const Location& where, const std::string& what, double given, double steel, double low, double high, const char* unit) {
+  // Checks that no limb of another table stands beyond the ends of yokes that both share.
+  void check_rows() {
+    const std::vector<LimbPlace> own = places_of_limbs(core_, model_);
+    const CoreGeometry geometry(core_);
+    const double half = 0.5 * geometry.mitre(geometry.largest(), false).limb_width;
+    for (const Core* other : tables_of<Core>(model_)) {
+      if (other->name == core_.name || !share_yokes(core_, *other)) continue;
+      const std::vector<LimbPlace> places = places_of_limbs(*other, model_);
+      for (std::size_t i = 0; i < core_.limbs.size(); ++i)
+        for (std::size_t j = 0; j < places.size(); ++j)
+          if (own[i].side * places[j].x > own[i].side * own[i].x + half)
+            say("limbs", "its yokes end at outer limb '" + core_.limbs[i] + "', and limb '" + other->all_limbs()[j] + "' of core '" +
+                             other->name +
+                             "', which has the same yokes, stands farther out: name the limbs between the outermost in 'middle_limbs', or "
+                             "give another core an active part of its own");
+    }
+  }
+
+  void check_steel() {
+    for (const std::string& name : core_.all_limbs()) {
+      const std::vector<CoreOfLimb> tables = cores_of(model_, name);
+      if (tables.front().core->name != core_.name) continue; // of several tables, the first one reports
+      const Body &limb = *model_.find_body(name), &part = *model_.find_body(core_.active_part);
+      const std::string body = "body '" + limb.name + "'";
+      const std::optional<LimbSteel> steel = steel_of(model_, name);
+      if (!steel) {
+        const auto counted = std::find_if(tables.begin(), tables.end(), [](const CoreOfLimb& t) { return t.core->is_counted(); });
+        if (counted == tables.end()) continue;
+        said_.push_back({limb.where, body + ": " + std::to_string(tables.size()) + " [[core]] tables name it, and 'overlap' of core '" +
+                                         counted->core->name +
+                                         "' does not say what its part of the stack weighs: no packet is judged alone, and mass and centre "
+                                         "of gravity are not compared with the sheets. Give 'stack_depth' and the like in each"});
+        continue;
+      }
+      if (core_.has_strips()) continue;
+      const std::string sheets = tables.size() == 1 ? "the sheets of core '" + core_.name + "' " : "the sheets of all its cores ";
+      if (steel->mass > 0.0) {
+        compare(limb.where, body + ": 'mass'", limb.mass, steel->mass, k_light, k_heavy, sheets, "kg");
+        compare(limb.where, body + ": 'inertia'", limb.inertia, steel->inertia, k_small, k_large, sheets, "kg m²");
+      }
+      const Vec2 centre = rotated(steel->centre, part.angle - limb.angle);
+      if (core_.centre_of_gravity == "of_the_sheets" && (limb.cg - centre).norm() > k_off_centre)
+        said_.push_back({limb.where, body + ": 'cg' = [" + number_text(limb.cg.x()) + ", " + number_text(limb.cg.y()) + "] m, " + sheets +
+                                         "have theirs at [" + rounded_text(centre.x()) + ", " + rounded_text(centre.y()) +
+                                         "] m from the middle of the limb"});
+    }
+  }
+
+  void compare(const Location& where, const std::string& what, double given, double steel, double low, double high,
+               const std::string& sheets, const char* unit) {
     if (given >= low * steel && given <= high * steel) return;
-    said_.push_back({where, what + " = " + number_text(given) + " " + unit + ", the sheets of core '" + core_.name + "' make it " +
-                                rounded_text(steel) + " " + unit +
+    said_.push_back({where, what + " = " + number_text(given) + " " + unit + ", " + sheets + "make it " + rounded_text(steel) + " " + unit +
                                 (given < steel ? ": too light a limb takes too little friction to be held"
                                                : ": more than tie plates and bindings usually add")});
   }
