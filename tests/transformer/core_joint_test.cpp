@@ -264,6 +264,13 @@ TEST_CASE("tables that name one limb make one joint and one stack, or are refuse
   const Model both = model_of(with(edges, edges));
   for (const StepLapJoint* joint : all_of<StepLapJoint>(both))
     CHECK(joint->steel_thickness.value() == doctest::Approx(2.0 * k_sheets * k_sheet).epsilon(1e-14)); // of both stacks
+  // A packet need not be as deep as a section is wide: the stack is.
+  const auto remarks = [&](double depth) {
+    return implausible_cores(model_of(with(""), {"core.core.stack_depth=0.3", "core.more.stack_depth=" + std::to_string(depth)}));
+  };
+  CHECK(remarks(0.15).empty());
+  REQUIRE(remarks(0.7).size() == 1);
+  CHECK(has(remarks(0.7).front().text, "core 'core': a stack 1 m deep of limbs 0.5 m wide is unusual"));
   CHECK(has(refusal(with("joints = [\"a\", \"b\"]\n")),
             "limb 'front limb', which core 'core' names, too, is held by joint 'front limb joint' there and by 'a' here"));
   CHECK(has(refusal(with("edge_stiffness = 2e11\n", edges)), "'edge_stiffness' differs from that of core 'core'"));

@@ -450,7 +450,7 @@ void CoreBuilder::give_steel(std::size_t i) {
   Body* body = nullptr;
   for (Body& candidate : model_.bodies)
     if (candidate.name == limbs_[i]) body = &candidate;
-  // Of several tables, the last one gives the steel of all.
+  // The last of several tables gives the steel of all.
   if (core_.has_strips() || body->fixed || cores_of(model_, limbs_[i]).back().core->name != core_.name) return;
   const std::optional<LimbSteel> steel = steel_of(model_, limbs_[i]);
   if (!steel) return;

@@ -37,7 +37,11 @@ std::string rounded_text(double value) {
 
 class PlausibilityCheck {
 public:
-  PlausibilityCheck(const Model& model, const Core& core, std::vector<CoreRemark>& said) : model_(model), core_(core), said_(said) {}
+  PlausibilityCheck(const Model& model, const Core& core, std::vector<CoreRemark>& said) : model_(model), core_(core), said_(said) {
+    for (const std::string& limb : core_.all_limbs())
+      for (const CoreOfLimb& table : cores_of(model_, limb))
+        if (std::find(stack_.begin(), stack_.end(), table.core) == stack_.end()) stack_.push_back(table.core);
+  }
 
   void run() {
     check_fields();
@@ -63,12 +67,18 @@ private:
   void check_fields() {
     for (const Field& field : core_kind().fields.fields()) {
       if (field.type != FieldType::number && field.type != FieldType::integer) continue;
+      const bool is_of_section = field.name == "limb_width" || field.name == "yoke_height" || field.name == "stack_depth";
+      if (is_of_section && is_one_of_several()) continue; // check_packets
       const FieldValue value = field.get(&core_);
       const std::string name = "'" + field.name + "'";
       if (const double* number = std::get_if<double>(&value)) look_at(field.name, *number, field.unit, name);
       if (const long* number = std::get_if<long>(&value)) look_at(field.name, static_cast<double>(*number), "", name);
     }
   }
+
+  [[nodiscard]] bool is_one_of_several() const { return stack_.size() > 1; }
+  // Returns true for the first of several tables that describe one stack, which reports on the stack as a whole.
+  [[nodiscard]] bool reports_on_stack() const { return stack_.front()->name == core_.name; }
 
   // Checks the smallest and the largest of several pressure shares.
   void check_shares(const std::string& field, const std::vector<double>& shares) {
@@ -84,16 +94,18 @@ private:
 
   void check_packets() {
     double width = 0.0, depth = 0.0, highest = 0.0;
-    for (const Vec2& packet : core_.packets) {
-      width = std::max(width, packet.x());
-      depth += packet.y();
+    for (const Core* table : stack_)
+      for (const Packet& packet : stack_of(*table).packets) {
+        width = std::max(width, packet.width);
+        depth += packet.depth;
+        highest = std::max(highest, packet.yoke_height);
+      }
+    if (reports_on_stack() && (is_one_of_several() || !core_.packets.empty())) {
+      const std::string all = is_one_of_several() ? "packets in all tables of limb '" + core_.all_limbs().front() + "'" : "'packets'";
+      look_at("limb_width", width, "m", "the widest of " + all);
+      if (!is_counted()) look_at("stack_depth", depth, "m", "the depth of all " + all);
+      look_at("yoke_height", highest, "m", is_one_of_several() ? "the highest yoke of " + all : "the highest of 'yoke_heights'");
     }
-    if (!core_.packets.empty()) {
-      look_at("limb_width", width, "m", "the widest of 'packets'");
-      look_at("stack_depth", depth, "m", "the depth of all 'packets'");
-    }
-    for (const double height : core_.yoke_heights) highest = std::max(highest, height);
-    if (!core_.yoke_heights.empty()) look_at("yoke_height", highest, "m", "the highest of 'yoke_heights'");
     check_shares("pressure_shares", core_.pressure_shares);
     check_shares("joint_pressure_shares", core_.joint_pressure_shares);
     for (const Vec2& duct : core_.ducts) look_at("ducts", duct.y(), "m", "the width of a duct in 'ducts'");
@@ -107,10 +119,15 @@ private:
       say("core_height", "'core_height' = " + number_text(m.core_height) + " m leaves a window " + rounded_text(window) +
                              " m high between limbs " + number_text(m.limb_width) +
                              " m wide: windows are usually higher than limbs are wide (" + k_assumed + ")");
-    if (core_.is_counted()) return;
-    const double depth = depth_of(geometry.stack());
-    if (depth < 0.4 * m.limb_width || depth > 1.8 * m.limb_width)
-      say("stack_depth", "a stack " + rounded_text(depth) + " m deep of limbs " + number_text(m.limb_width) +
+    if (is_counted() || !reports_on_stack()) return;
+    double depth = 0.0, width = 0.0;
+    for (const Core* table : stack_) {
+      const CoreGeometry own(*table);
+      depth += depth_of(own.stack());
+      width = std::max(width, own.mitre(own.largest(), false).limb_width);
+    }
+    if (depth < 0.4 * width || depth > 1.8 * width)
+      say("stack_depth", "a stack " + rounded_text(depth) + " m deep of limbs " + number_text(width) +
                              " m wide is unusual: sections are about as deep as wide, 0.4 to 1.8 of it (" + k_assumed + ")");
   }
 
@@ -204,9 +221,15 @@ private:
                                                : ": more than tie plates and bindings usually add")});
   }
 
+  // Returns true if the depth of a part of the stack is unknown.
+  [[nodiscard]] bool is_counted() const {
+    return std::any_of(stack_.begin(), stack_.end(), [](const Core* table) { return table->is_counted(); });
+  }
+
   const Model& model_;
   const Core& core_;
   std::vector<CoreRemark>& said_;
+  std::vector<const Core*> stack_; ///< tables that have a limb in common with this one, with it
 };
 
 } // namespace
