@@ -187,6 +187,41 @@ TEST_CASE("the line where edges bear is found by the direction that the interfac
   CHECK(press("across = [1.0, 0.0]") == doctest::Approx(0.0).scale(1.0).epsilon(1e-12)); // beside it: nothing closes
 }
 
+// The same, the yoke a fixed body turned by an angle, with corners and direction in the frames of the bodies or in that of the ground.
+TEST_CASE("edges of a fixed yoke bear alike at any angle of the yoke") {
+  for (const double angle : {0.0, 0.1, 0.5 * k_pi, k_pi, 4.0})
+    for (const bool is_in_body : {true, false}) {
+      CAPTURE(angle);
+      CAPTURE(is_in_body);
+      const auto turned = [angle](std::vector<Vec2> ring) {
+        for (Vec2& p : ring) p = steplap::rotated(p, angle);
+        return ring;
+      };
+      const Vec2 at = steplap::rotated({0.0, -0.5}, angle), across = is_in_body ? Vec2(0.0, -1.0) : steplap::rotated({0.0, -1.0}, angle);
+      std::vector<Vec2> yoke = rectangle(-10.0, 0.0, 0.3, 0.4), limb = k_limb;
+      if (is_in_body)
+        for (Vec2& p : limb) p.y() += 0.5; // from the limb's origin
+      const std::string angles = "angle = " + number(angle) + "\n";
+      const auto system =
+          steplap::compile(steplap::parse_model(header("end = 1.0", 1.0) + "[[body]]\nname = \"yoke\"\nfixed = true\n" + angles +
+                                                    body("limb", 10.0, 1.0, at) + angles + joint("limb", "yoke", "edge_stiffness = 2e8") +
+                                                    interface(is_in_body ? yoke : turned(yoke), is_in_body ? limb : turned(limb), 1e5, 0.2,
+                                                              "clearance = 0.0\nframe = \"" + std::string(is_in_body ? "body" : "ground") +
+                                                                  "\"\nacross = [" + number(across.x()) + ", " + number(across.y()) + "]"),
+                                                "scene.toml", steplap::transformer_catalog()));
+      steplap::State state = system->initial_state();
+      const Vec2 towards_yoke = steplap::rotated({0.0, 1e-4}, angle);
+      state.q[3] += towards_yoke.x();
+      state.q[4] += towards_yoke.y();
+      steplap::Dynamics dynamics(*system);
+      state.friction[0].phase = steplap::FrictionPhase::free;
+      dynamics.set_state(state);
+      std::vector<double> y(dynamics.dimension());
+      dynamics.pack(state, y.data());
+      CHECK(dynamics.mechanical_energy(0.0, y.data()) == doctest::Approx(0.5 * 2e8 * k_line * 1e-8).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("edges without a clearance, or an allowance without edges, are refused") {
   const auto refusal = [](const std::string& fields, const std::string& clearance) -> std::string {
     try {
