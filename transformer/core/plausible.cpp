@@ -165,21 +165,30 @@ private:
     }
   }
 
-  // Checks that no limb of another table stands beyond the ends of yokes that both share.
+  // Checks that limbs of another table can stand between yokes that both share: not beyond the ends, and each in a place of its own.
   void check_rows() {
+    const auto width_of = [](const Core& core) {
+      const CoreGeometry geometry(core);
+      return geometry.mitre(geometry.largest(), false).limb_width;
+    };
     const std::vector<LimbPlace> own = places_of_limbs(core_, model_);
-    const CoreGeometry geometry(core_);
-    const double half = 0.5 * geometry.mitre(geometry.largest(), false).limb_width;
+    const std::vector<std::string> names = core_.all_limbs();
+    bool is_after = false; // two limbs in one place are reported once, by the first table
     for (const Core* other : tables_of<Core>(model_)) {
+      if (other->name == core_.name) is_after = true;
       if (other->name == core_.name || !share_yokes(core_, *other)) continue;
       const std::vector<LimbPlace> places = places_of_limbs(*other, model_);
-      for (std::size_t i = 0; i < core_.limbs.size(); ++i)
-        for (std::size_t j = 0; j < places.size(); ++j)
-          if (own[i].side * places[j].x > own[i].side * own[i].x + half)
-            say("limbs", "its yokes end at outer limb '" + core_.limbs[i] + "', and limb '" + other->all_limbs()[j] + "' of core '" +
-                             other->name +
-                             "', which has the same yokes, stands farther out: name the limbs between the outermost in 'middle_limbs', or "
-                             "give another core an active part of its own");
+      const double apart = 0.5 * (width_of(core_) + width_of(*other));
+      for (std::size_t i = 0; i < own.size(); ++i)
+        for (std::size_t j = 0; j < places.size(); ++j) {
+          const std::string limb = "limb '" + other->all_limbs()[j] + "' of core '" + other->name + "', which has the same yokes, stands ";
+          const char* const remedy = "; another core has an active part of its own";
+          if (is_after && std::abs(places[j].x - own[i].x) < apart)
+            say(core_.is_middle(i) ? "middle_limbs" : "limbs", limb + "in the same place as '" + names[i] + "'" + remedy);
+          else if (!core_.is_middle(i) && own[i].side * (places[j].x - own[i].x) >= apart)
+            say("limbs", limb + "beyond outer limb '" + names[i] +
+                             "', where the yokes end: name the limbs between the outermost in 'middle_limbs'" + remedy);
+        }
     }
   }
 
