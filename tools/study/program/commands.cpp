@@ -133,6 +133,8 @@ A study that was interrupted goes on when it is run again.
                      {"--changed", &o->is_changed, "", "the study has changed: keep the samples that are the same"},
                      {"--report", &o->is_reported, "", "write the page of the study next to the store (see steplap study report)"},
                      {"--threads", &o->threads, "N", "threads (default: all processors)"}};
+  for (const char* const force : {"-f", "--force"}) // of other commands
+    command.retired.push_back({force, std::string(force) + ": a study goes on where it stopped; --restart drops what its store holds"});
   command.prints_tables = true;
   command.run = [o, &ranks](Console& console) { return run_command_of(*o, ranks, console); };
   return command;

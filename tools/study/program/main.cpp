@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <iostream>
 
 int main(int argc, char** argv) {
@@ -18,9 +19,14 @@ int main(int argc, char** argv) {
     return code_of_output(std::cout, std::cerr, run_program(assessment, arguments, std::cout, std::cerr, isatty(STDERR_FILENO) == 1));
   }
   const Program program = study::study_program(mpi.ranks());
-  const bool is_file =
-      !arguments.empty() && (arguments.front() == "-" || !arguments.front().starts_with('-')) && !is_command(program, arguments.front());
-  if (is_file) arguments.insert(arguments.begin(), "run");
+  const auto is_own = [&program](const std::string& word) {
+    return is_command(program, word) || word == "-h" || word == "--help" || word == "--version" || word == "--licences";
+  };
+  // The word "run" may be left out, before options, too.
+  const bool is_option = !arguments.empty() && arguments.front().starts_with('-') && arguments.front() != "-";
+  const bool is_run =
+      is_option ? std::none_of(arguments.begin(), arguments.end(), is_own) : !arguments.empty() && !is_command(program, arguments.front());
+  if (is_run) arguments.insert(arguments.begin(), "run");
   const int code = run_program(program, arguments, std::cout, std::cerr, isatty(STDERR_FILENO) == 1);
   return code_of_output(std::cout, std::cerr, code);
 }
