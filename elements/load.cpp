@@ -99,8 +99,9 @@ void compile_load(const Element& element, SystemBuilder& builder) {
   const CompiledMarker marker = builder.marker(e.at);
   if (marker.body == k_ground) return builder.error("acts on the ground or a fixed body, which it cannot move");
   LoadGroup& group = builder.group<LoadGroup>();
-  group.entries.push_back({marker.body, marker.point, e.force, e.couple, marker.angle, builder.signal(e.force_x, SignalUse::force),
-                           builder.signal(e.force_y, SignalUse::force), builder.signal(e.torque, SignalUse::force), e.frame == "body"});
+  group.entries.push_back({marker.body, marker.point, e.force.value_or(Vec2::Zero()), e.couple.value_or(0.0), marker.angle,
+                           builder.signal(e.force_x, SignalUse::force), builder.signal(e.force_y, SignalUse::force),
+                           builder.signal(e.torque, SignalUse::force), e.frame == "body"});
   const auto* entries = &group.entries;
   const std::size_t i = group.entries.size() - 1;
   const auto load = [entries, i](const Snapshot& s) { return load_at((*entries)[i], *s.evaluation); };
@@ -135,7 +136,7 @@ force = [1e3, 0.0]
     k.acts_from_outside = [](const Element&, const Model&) { return true; };
     k.has_constant_load = [](const Element& element) {
       const auto& load = static_cast<const Load&>(element);
-      return load.force != Vec2::Zero() || load.couple != 0.0;
+      return load.force.value_or(Vec2::Zero()) != Vec2::Zero() || load.couple.value_or(0.0) != 0.0;
     };
     return k;
   }();

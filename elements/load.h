@@ -3,12 +3,14 @@
 
 #include "mbd/model/model.h"
 
+#include <optional>
+
 namespace steplap {
 
 struct Load : Element {
   std::string at;
-  Vec2 force = Vec2::Zero();
-  double couple = 0.0;
+  std::optional<Vec2> force;            // N
+  std::optional<double> couple;         // N m
   std::string force_x, force_y, torque; ///< names of signals that are added to the constant values
   std::string frame = "ground";
 };

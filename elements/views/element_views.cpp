@@ -3,6 +3,7 @@
 #include "elements/catalog.h"
 #include "elements/joints.h"
 #include "elements/limit.h"
+#include "elements/load.h"
 #include "elements/machinery/rope.h"
 #include "elements/own_state.h"
 #include "elements/pad.h"
@@ -15,8 +16,10 @@
 #include "elements/views/kind_checks.h"
 #include "elements/views/symbols.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/model/action.h"
 #include "mbd/model/entries.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace steplap {
@@ -88,6 +91,31 @@ std::vector<Finding> assumed_pads(const Model& model) {
   return findings;
 }
 
+// Returns true if an action gives the element a value.
+bool is_set_by_action(const Model& model, const std::string& element) {
+  return std::any_of(model.elements.begin(), model.elements.end(), [&element](const ElementEntry& entry) {
+    const auto* const action = as_action(*entry.element);
+    return action && std::any_of(action->steps.begin(), action->steps.end(), [&element](const std::string& text) {
+             const ActionStepText step = action_step(text);
+             return step.verb == ActionVerb::set && step.name == element;
+           });
+  });
+}
+
+// Finds loads to which nothing gives a value. A force of zero that the file states is intended, for example as one value of a study.
+std::vector<Finding> loads_without_value(const Model& model) {
+  std::vector<Finding> findings;
+  for (const Load* const load : elements_of<Load>(model)) {
+    const bool is_given = load->force || load->couple || !load->force_x.empty() || !load->force_y.empty() || !load->torque.empty();
+    if (is_given || is_set_by_action(model, load->name)) continue;
+    findings.push_back({"load_without_value", FindingLevel::warning,
+                        "load '" + load->name + "' has no force, no couple and no signal, so that the run is judged without it. Give " +
+                            "'force', 'couple', 'force_x', 'force_y' or 'torque'; force = [0, 0] says that none is meant",
+                        load->where});
+  }
+  return findings;
+}
+
 } // namespace
 
 KindViews element_views() {
@@ -102,7 +130,7 @@ KindViews element_views() {
   views.elements[&limit_kind()].check_poses = check_stops;
   views.elements[&step_lap_joint_kind()].assess = assess;
   views.elements[&step_lap_interface_kind()].sheets = sheets_of;
-  views.value_checks = {unlike_shapes, assumed_pads};
+  views.value_checks = {unlike_shapes, assumed_pads, loads_without_value};
   views.scene_checks = {doubled_corners};
   views.assembly_checks = {far_joints, stepped_feet};
   return views;

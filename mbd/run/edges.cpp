@@ -1,9 +1,13 @@
 #include "mbd/run/edges.h"
 
+#include "mbd/run/body_reach.h"
 #include "mbd/run/quantity_text.h"
 #include "mbd/run/range_index.h"
 #include "mbd/system/contact_description.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -24,18 +28,54 @@ std::optional<Finding> beyond_edge(const LoadedModel& loaded, const EndlessFace&
                  entry.element->where};
 }
 
+// Returns true if the face of the contact ends, so that a foot beside it may be below its line without touching.
+bool has_ends(const ElementEntry& entry) {
+  const Field* const ends = entry.kind->fields.find("ends");
+  return ends && std::holds_alternative<Vec2>(ends->get(entry.element.get()));
+}
+
+// Returns the finding for a contact whose parts give no limit of its depth, for example on bare ground, and that was pressed `depth` metres
+// deep, more than half of the size of the smaller body that it carries. Such a depth is the stroke of a spring, or a wrong stiffness.
+std::optional<Finding> sunk(const LoadedModel& loaded, const ElementEntry& entry, const ContactDescription& contact,
+                            const ChannelRange& gap, const std::vector<double>& reaches) {
+  constexpr double k_deep = 0.5; // share of the distance of the farthest point from the centre of gravity, or of the radius of gyration
+  if (contact.is_preloaded || has_ends(entry)) return std::nullopt; // a soft spring may be preloaded over a long way
+  const Body* smaller = nullptr;
+  double size = std::numeric_limits<double>::infinity();
+  for (const std::string& marker : {contact.a, contact.b}) {
+    const Body* const body = place_of(loaded.model, marker).body;
+    if (!body || body->fixed || !(body->mass > 0.0)) continue;
+    const double reach = reaches[static_cast<std::size_t>(body - loaded.model.bodies.data())];
+    const double own = std::max(reach, std::sqrt(body->inertia / body->mass));
+    if (own < size) smaller = body, size = own;
+  }
+  if (!smaller || !(-gap.low.value > k_deep * size)) return std::nullopt;
+  return Finding{"contact_sinks", FindingLevel::warning,
+                 "'" + entry.element->name + "' was pressed " + quantity_text(-gap.low.value, "m", 1e-3) + " deep at t = " +
+                     time_text(gap.low.t) + " s, and '" + smaller->name + "' reaches only " + quantity_text(size, "m", 1e-3) +
+                     " from its centre of gravity: it sinks in. Check 'stiffness', force over depth; a bed that is as soft as this is a " +
+                     "fixed body with an outline, which says how thick it is",
+                 entry.element->where};
+}
+
 } // namespace
 
 std::vector<Finding> contacts_too_deep(const LoadedModel& loaded, const std::vector<ChannelRange>& ranges) {
   const RangeIndex range_of(ranges);
   std::vector<Finding> found;
+  std::vector<double> reaches; // of the model's bodies; computed if a contact needs them
   for (const ElementEntry& entry : loaded.model.elements) {
     const Element& element = *entry.element;
     const auto contact = contact_of(entry, loaded.model);
-    if (!contact || !contact->depth_limit) continue;
+    const ChannelRange* const gap = contact ? range_of.find(element.name + ".gap") : nullptr;
+    if (!gap || !(gap->low.value < 0.0)) continue;
+    if (!contact->depth_limit) {
+      if (reaches.empty()) reaches = body_reaches(loaded.model);
+      if (auto finding = sunk(loaded, entry, *contact, *gap, reaches)) found.push_back(std::move(*finding));
+      continue;
+    }
     const double most = *contact->depth_limit;
-    const ChannelRange* const gap = range_of.find(element.name + ".gap");
-    if (!gap || !(-gap->low.value > most)) continue;
+    if (!(-gap->low.value > most)) continue;
     found.push_back({"contact_too_deep", FindingLevel::warning,
                      "'" + element.name + "' was pressed " + quantity_text(-gap->low.value, "m", 1e-3) +
                          " deep at t = " + time_text(gap->low.t) + " s; beyond " + quantity_text(most, "m", 1e-3) +

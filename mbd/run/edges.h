@@ -15,7 +15,8 @@ namespace steplap {
 /// Returns one finding for each contact that pressed beyond the end of its part at any time of the run.
 [[nodiscard]] std::vector<Finding> contacts_beyond_edges(const LoadedModel& loaded, const RunResult& result);
 
-/// Returns one finding for each contact whose largest penetration in the run exceeds ContactDescription::depth_limit.
+/// Returns one finding for each contact whose largest penetration in the run exceeds ContactDescription::depth_limit, or, without a limit,
+/// half of the size of the smaller body.
 [[nodiscard]] std::vector<Finding> contacts_too_deep(const LoadedModel& loaded, const std::vector<ChannelRange>& ranges);
 
 } // namespace steplap

@@ -2,8 +2,12 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/io/load_case.h"
 #include "mbd/io/record_signal.h"
+#include "mbd/model/action.h"
 #include "mbd/model/signal_network.h"
+#include "mbd/run/acting_signals.h"
+#include "mbd/run/late_formulas.h"
 #include "mbd/run/loaded_model.h"
 #include "mbd/run/model_entries.h"
 #include "mbd/system/actions.h"
@@ -15,6 +19,7 @@
 #include <numbers>
 #include <optional>
 #include <string_view>
+#include <unordered_set>
 
 namespace steplap {
 
@@ -48,14 +53,14 @@ bool is_zero(const Signal& signal, double end) {
   return true;
 }
 
-bool is_used(const Model& model, const std::string& name) {
-  const auto names_it = [&name](const FieldTable& fields, const void* object) {
-    return std::any_of(fields.fields().begin(), fields.fields().end(), [&](const Field& field) {
-      return field.type == FieldType::signal && std::get<std::string>(field.get(object)) == name;
-    });
-  };
-  return std::any_of(model.elements.begin(), model.elements.end(),
-                     [&](const ElementEntry& entry) { return names_it(entry.kind->fields, entry.element.get()); });
+// Returns the signals that elements name, in their fields, formulas and actions.
+std::unordered_set<std::string> used_signals(const Model& model) {
+  std::unordered_set<std::string> used;
+  for (const ActingSignal& use : acting_signals_without_actions(model, model.simulation.end)) used.insert(use.signal);
+  for (const ElementEntry& entry : model.elements)
+    if (const auto* const action = as_action(*entry.element))
+      for (const std::string& step : action->steps) used.insert(action_step(step).value);
+  return used;
 }
 
 bool is_part(const Model& model, const std::string& name) {
@@ -63,6 +68,27 @@ bool is_part(const Model& model, const std::string& name) {
     const std::vector<std::string> parts = parts_of(entry.kind->fields, entry.definition.get());
     return std::find(parts.begin(), parts.end(), name) != parts.end();
   });
+}
+
+// Returns the first signal of the model's own file that varies and that nothing uses, if nothing else loads the machine: no constant load, no
+// drive, no formula of the time and no action. A machine under another load may have spare signals.
+const SignalEntry* idle_load(const Model& model, const std::unordered_set<std::string>& used, SignalNetwork& network) {
+  const auto is_load = [](const ElementEntry& entry) {
+    return as_action(*entry.element) || uses_time(entry) ||
+           (entry.kind->has_constant_load && entry.kind->has_constant_load(*entry.element));
+  };
+  if (model.simulation.velocity != Vec2::Zero() || std::any_of(model.elements.begin(), model.elements.end(), is_load)) return nullptr;
+  const SignalEntry* idle = nullptr;
+  for (const SignalEntry& entry : model.signals) {
+    const std::string& name = entry.definition->name;
+    const Signal* const signal = network.build(name);
+    if (!signal || signal->is_constant()) {
+      if (signal && signal->value(0.0) != 0.0 && used.contains(name)) return nullptr;
+    } else if (!idle && !used.contains(name) && !is_part(model, name) && entry.definition->where.file == model.header.where.file) {
+      idle = &entry;
+    }
+  }
+  return idle;
 }
 
 // Returns the first interval, s, in which rows of a record are missing; nothing if the rows are not evenly spaced apart from few
@@ -90,10 +116,10 @@ std::optional<std::pair<double, double>> missing_rows(const Signal& signal) {
   return static_cast<double>(missing) <= k_few * static_cast<double>(steps.size()) ? first : std::nullopt;
 }
 
-void find_gaps(const Model& model, SignalNetwork& network, std::vector<Finding>& findings) {
+void find_gaps(const Model& model, const std::unordered_set<std::string>& used, SignalNetwork& network, std::vector<Finding>& findings) {
   for (const SignalEntry& entry : model.signals) {
     const std::string& name = entry.definition->name;
-    if (entry.kind != &record_signal_kind() || (!is_used(model, name) && !is_part(model, name))) continue;
+    if (entry.kind != &record_signal_kind() || (!used.contains(name) && !is_part(model, name))) continue;
     const Signal* const signal = network.build(name);
     if (const auto gap = signal ? missing_rows(*signal) : std::nullopt)
       findings.push_back(warning("rows_missing",
@@ -142,6 +168,21 @@ bool is_round(double number) {
   return std::round(number * k_places) == number * k_places;
 }
 
+// Returns true if the run has another gravity than the file gives, as that of a load case with `pull`.
+bool has_own_gravity(const LoadedModel& loaded) {
+  return std::any_of(loaded.overrides.begin(), loaded.overrides.end(),
+                     [](const std::string& change) { return change.starts_with("gravity="); });
+}
+
+// Returns the values of `pull`, m/s², of which one may be part of the gravity; none if the gravity is that of the file.
+std::vector<Vec2> pulls_in_gravity(const LoadedModel& loaded) {
+  std::vector<Vec2> pulls;
+  if (!has_own_gravity(loaded)) return pulls;
+  for (const LoadCase& one : load_cases_of(loaded.model))
+    if (one.pull) pulls.push_back(*one.pull);
+  return pulls;
+}
+
 void note_turns(const ModelEntry& entry, std::vector<Finding>& findings) {
   for (const Field& field : entry.fields->fields()) {
     if (field.type != FieldType::number || field.unit != "rad") continue;
@@ -178,12 +219,13 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
   const double end = model.simulation.end;
   std::vector<Finding> findings;
   SignalNetwork network(model);
-  find_gaps(model, network, findings);
+  const std::unordered_set<std::string> used = used_signals(model);
+  find_gaps(model, used, network, findings);
   bool has_load = false;
   const SignalEntry* silent = nullptr;
   for (const SignalEntry& entry : model.signals) {
     const std::string& name = entry.definition->name;
-    const Signal* const signal = is_used(model, name) ? network.build(name) : nullptr;
+    const Signal* const signal = used.contains(name) ? network.build(name) : nullptr;
     if (!signal || signal->is_constant()) continue; // a constant of zero is intended
     if (!is_zero(*signal, end)) {
       has_load = true;
@@ -199,17 +241,34 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
   }
   const bool is_at_rest = std::all_of(model.bodies.begin(), model.bodies.end(),
                                       [](const Body& body) { return body.velocity.isZero(0.0) && body.angular_velocity == 0.0; });
-  if (silent && !has_load && is_at_rest)
+  if (has_load || !is_at_rest || has_own_gravity(loaded)) return findings;
+  if (silent)
     findings.push_back(warning("no_load",
                                "every signal that varies is zero throughout the run: nothing loads the machine but what is constant, and "
                                "its load is not shown",
                                silent->definition->where));
+  else if (const SignalEntry* const idle = idle_load(model, used, network))
+    findings.push_back(warning("no_load",
+                               "signal '" + idle->definition->name +
+                                   "' is used by nothing, and no other load acts on the machine: name it in the element that it drives",
+                               idle->definition->where));
   return findings;
 }
 
 std::vector<Finding> implausible_gravity(const LoadedModel& loaded) {
   constexpr double k_most = 60.0; // m/s²: Jupiter has 25; a constant pull of 5 g may be added, or one that takes nearly all of it
-  const double size = loaded.model.header.gravity.norm();
+  const Vec2& gravity = loaded.model.header.gravity;
+  const double size = gravity.norm();
+  const std::vector<Vec2> pulls = pulls_in_gravity(loaded);
+  // Straight up is a wrong sign. A scene that is turned as a whole has its gravity turned by any other angle.
+  const auto points_up = [](const Vec2& g) { return g.x() == 0.0 && g.y() > 0.0; };
+  if (pulls.empty() ? points_up(gravity) : std::all_of(pulls.begin(), pulls.end(), [&](const Vec2& p) { return points_up(gravity - p); }))
+    return {
+        warning("gravity_upwards",
+                "gravity points upwards, with " + rounded_text(gravity.y(), 3) +
+                    " m/s²: y counts upwards, so that gravity = [0, -9.81] is that of the Earth. Give the acceleration of a vehicle as " +
+                    "the 'pull' of a [[case]]",
+                loaded.model.header.where)};
   if (size <= k_most) return {};
   return {warning("implausible_gravity",
                   "gravity is " + rounded_text(size, 3) + " m/s², " + rounded_text(size / 9.80665, 3) +

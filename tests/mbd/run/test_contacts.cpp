@@ -138,6 +138,36 @@ TEST_CASE("contacts that leave their part leave the verdict open") {
   }
 }
 
+TEST_CASE("a body that sinks into bare ground by more than half of its size leaves the verdict open") {
+  // A cube of 1 m on two feet: 0.5 sqrt(0.5) = 0.3536 m. It rests m g/(2 k) deep.
+  const auto run = [](double depth, const std::string& floor) {
+    const double k = 100.0 * 9.81 / (2.0 * depth);
+    const auto foot = [&](const char* name, double x) {
+      return std::string("[[element]]\nkind = \"unilateral_contact\"\nname = \"") + name + "\"\na = { body = \"box\", point = [" +
+             number(x) + ", -0.5] }\n" + (floor.empty() ? "" : "b = { body = \"floor\", at = [0.0, 0.0] }\n") + "stiffness = " + number(k) +
+             "\n";
+    };
+    const std::string text = "[simulation]\nend = 0.1\ninitial = \"equilibrium\"\n[[body]]\nname = \"box\"\nmass = 100.0\ninertia = 16.0\n"
+                             "position = [0.0, 0.5]\noutline = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]\n" +
+                             floor + foot("left", -0.4) + foot("right", 0.4) +
+                             "[[element]]\nkind = \"prismatic\"\nname = \"guide\"\na = \"box\"\naxis = [0.0, 1.0]\n"
+                             "[[acceptance]]\nname = \"height\"\nchannel = \"box.y\"\nwithin = 1.0\n";
+    RunOptions options;
+    options.estimating = Estimating::never;
+    return judged_run(load_model_text(text, "sinks.toml"), options);
+  };
+  const Report deep = run(0.36, ""), shallow = run(0.35, "");
+  CHECK(deep.judgement.verdict == Verdict::open);
+  CHECK(found(deep, "contact_sinks"));
+  CHECK(shallow.judgement.verdict == Verdict::hold);
+  CHECK_FALSE(found(shallow, "contact_sinks"));
+  // A floor with an outline says how deep a foot may go.
+  const std::string floor = "[[body]]\nname = \"floor\"\nfixed = true\noutline = [[-2.0, -1.0], [2.0, -1.0], [2.0, 0.0], [-2.0, 0.0]]\n";
+  const Report bed = run(0.36, floor);
+  CHECK(bed.judgement.verdict == Verdict::hold);
+  CHECK_FALSE(found(bed, "contact_sinks"));
+}
+
 TEST_CASE("how far a foot was driven beyond its edge, and when, is that of its motion") {
   // x = A sin 2πft on a deck that ends at 1 m: at most A − 1 beyond, at a quarter of the period. Within a step the motion is a cubic, whose
   // error is (2πf h)⁴/384 of A: below 1e-4 for steps up to a fifth of a radian.

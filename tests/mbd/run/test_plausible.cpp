@@ -97,6 +97,64 @@ TEST_CASE("gravity of no planet caps the verdict") {
   }
 }
 
+TEST_CASE("gravity that points upwards caps the verdict, except where the pull of a load case lifts") {
+  const std::string scene = "[[body]]\nname = \"a\"\nmass = 1.0\ninertia = 1.0\n[[case]]\nname = \"heave\"\npull = [0.0, 12.0]\nsource = "
+                            "\"a code\"\n";
+  const auto is_found = [&](const std::string& gravity, const std::vector<std::string>& overrides) {
+    const std::vector<Finding> findings =
+        findings_before(*load_model_text("gravity = " + gravity + "\n" + scene, "scene.toml", overrides, program_catalogue()));
+    const Finding* const finding = found(findings, "gravity_upwards");
+    if (finding) CHECK(caps_verdict(*finding));
+    return finding != nullptr;
+  };
+  CHECK(is_found("[0, 9.81]", {}));
+  CHECK_FALSE(is_found("[-1.7, 9.66]", {})); // a scene turned upside down and more
+  CHECK_FALSE(is_found("[0, -9.81]", {}));
+  CHECK_FALSE(is_found("[0, 0]", {}));
+  CHECK_FALSE(is_found("[9.81, 0.1]", {}));
+  CHECK_FALSE(is_found("[0, -9.81]", {"gravity=[0, 2.19]"})); // −9.81 + 12
+  CHECK(is_found("[0, 9.81]", {"gravity=[0, 21.81]"}));       // 9.81 + 12
+  CHECK(is_found("[0, -9.81]", {"gravity=[0, 12.5]"}));       // more than the pull lifts
+}
+
+TEST_CASE("a load to which nothing gives a value leaves the verdict open, one of zero that is stated does not") {
+  const auto run = [](const std::string& fields, const std::string& more = "") {
+    return run_of("[[body]]\nname = \"a\"\nmass = 1.0\ninertia = 1.0\n[[element]]\nkind = \"spring_damper\"\nname = \"s\"\na = \"a\"\n"
+                  "axis = [0.0, 1.0]\nstiffness = 1e4\n[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"a\"\n" +
+                  fields + "[[acceptance]]\nname = \"stays\"\nchannel = \"a.y\"\nwithin = 1.0\n" + more);
+  };
+  const Report silent = run("");
+  CHECK(silent.judgement.verdict == Verdict::open);
+  CHECK(found(silent.findings, "load_without_value"));
+  for (const char* const fields : {"force = [0, 0]\n", "couple = 0.0\n", "force = [0, -1.0]\n"}) {
+    CAPTURE(fields);
+    const Report report = run(fields);
+    CHECK(report.judgement.verdict == Verdict::hold);
+    CHECK_FALSE(found(report.findings, "load_without_value"));
+  }
+  CHECK_FALSE(found(run("", "[[action]]\nname = \"on\"\nwhen = \"t > '0.1 s'\"\ndo = [\"set push.force = [0 N, -1 N]\"]\n").findings,
+                    "load_without_value"));
+}
+
+TEST_CASE("a pulse that nothing uses leaves the verdict open where nothing else loads the machine") {
+  const auto run = [](const std::string& more) {
+    return run_of("[[body]]\nname = \"a\"\nmass = 1.0\ninertia = 1.0\n[[element]]\nkind = \"spring_damper\"\nname = \"s\"\na = \"a\"\n"
+                  "axis = [0.0, 1.0]\nstiffness = 1e4\n[[signal]]\nname = \"jolt\"\nkind = \"half_sine\"\npeak = 1.0\nduration = 0.1\n"
+                  "[[acceptance]]\nname = \"stays\"\nchannel = \"a.y\"\nwithin = 1.0\n" +
+                  more);
+  };
+  const std::string load = "[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"a\"\n";
+  const Report idle = run("");
+  CHECK(found(idle.findings, "no_load"));
+  CHECK(idle.judgement.verdict == Verdict::open);
+  for (const std::string& used : {load + "force_y = \"jolt\"\n", load + "force = [0.0, 1.0]\n",
+                                  std::string("[[element]]\nkind = \"force\"\nname = \"push\"\na = \"a\"\ncoordinate = \"y\"\n"
+                                              "formula = \"jolt * '1 N'\"\n")}) {
+    CAPTURE(used);
+    CHECK_FALSE(found(run(used).findings, "no_load"));
+  }
+}
+
 TEST_CASE("every kind with a coefficient of friction can say where it comes from, but tyres and sheets") {
   // Treads of tyres grip with more than 1; sheets of cores have ranges of their own.
   const std::set<std::string> exempt = {"tyre", "step_lap_interface"};

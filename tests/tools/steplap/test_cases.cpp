@@ -148,6 +148,26 @@ TEST_CASE("the matrix of a mass on a spring is that of statics") {
   CHECK(found["cases"][2]["plane"] == "transverse");
 }
 
+TEST_CASE("a case of pull alone is loaded by it, and a case of nothing is not loaded where the signal is zero") {
+  const std::string text = k_hanging + R"([[signal]]
+name = "jolt"
+kind = "half_sine"
+peak = 0.0
+duration = "50 ms"
+[[element]]
+name = "jolts"
+kind = "load"
+at = "mass"
+force_y = "jolt"
+)" + load_case("rest", "") +
+                           load_case("heave", "pull = [0, 4.905]");
+  const Workbench bench;
+  const Json results = cases_of(bench.write("heaving.toml", text));
+  CHECK(results["cases"][0]["verdict"] == "open");
+  CHECK(results["cases"][0]["reason"].get<std::string>().find("nothing loads the machine") != std::string::npos);
+  CHECK(results["cases"][1]["verdict"] == "hold");
+}
+
 TEST_CASE("criteria that do not apply to a case neither judge it nor stand in its column") {
   const Workbench bench;
   const std::string down = "pull = [0, \"-1 gravity\"]\n";
