@@ -20,6 +20,7 @@
 #include <sstream>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 namespace steplap {
 
@@ -79,15 +80,24 @@ std::set<std::string> owners_of(const Model& model, const std::string& channel) 
   return owners;
 }
 
-// Returns the moving bodies that an element connects.
+// Returns the moving bodies that an element connects, directly or as the friction of other elements, such as contacts.
 std::vector<std::string> bodies_of(const Model& model, const ElementEntry& entry) {
   std::vector<std::string> bodies;
-  for (const Field& field : entry.kind->fields.fields())
+  for (const Field& field : entry.kind->fields.fields()) {
+    const FieldValue value = field.get(entry.element.get());
     if (field.type == FieldType::marker || field.type == FieldType::body) {
-      const auto name = std::get<std::string>(field.get(entry.element.get()));
+      const auto& name = std::get<std::string>(value);
       const Body* const body = name.empty() ? nullptr : place_of(model, name).body;
       if (body && !body->fixed) bodies.push_back(body->name);
     }
+    if (field.type != FieldType::elements) continue;
+    for (const std::string& name : std::get<std::vector<std::string>>(value))
+      for (const ElementEntry& other : model.elements)
+        if (other.element->name == name && &other != &entry) {
+          const std::vector<std::string> more = bodies_of(model, other);
+          bodies.insert(bodies.end(), more.begin(), more.end());
+        }
+  }
   return bodies;
 }
 
@@ -100,15 +110,17 @@ bool slips_at_end(const RangeIndex& ranges, const std::string& element) {
 // Elements that slip when the run ends, and the places that move with them.
 class Slides {
 public:
-  Slides(const Model& model, const RunResult& result) : model_(model), result_(result) {
+  Slides(const LoadedModel& loaded, const RunResult& result) : model_(loaded.model), result_(result) {
     const RangeIndex ranges(result.ranges);
-    for (const ElementEntry& entry : model.elements) {
+    for (const ElementEntry& entry : model_.elements) {
       if (!slips_at_end(ranges, entry.element->name)) continue;
       owners_.insert(entry.element->name);
       for (const std::string& body : bodies_of(model_, entry)) owners_.insert(body);
     }
+    if (!owners_.empty()) follow_joints(*loaded.system);
   }
-  /// Returns true if the channel is a place that belongs to an element that slips or to one of its bodies, or a formula of such channels.
+  /// Returns true if the channel is a place that belongs to an element that slips, to one of its bodies or to a body that these carry by
+  /// joints, or a formula of such channels.
   [[nodiscard]] bool moves(const Channel& channel) const {
     if (!is_place(channel)) return false;
     const auto owners = owners_of(model_, channel.name);
@@ -125,6 +137,35 @@ public:
   }
 
 private:
+  // Adds the bodies that joints connect to those that slide. A body that a drive moves, such as the vehicle on which a load slides, moves
+  // without the slide.
+  void follow_joints(const System& system) {
+    std::vector<std::vector<int>> joined(system.bodies.size());
+    std::vector<char> is_left_out(system.bodies.size(), 0);
+    is_left_out[k_ground] = 1;
+    for (const RowSpec& row : system.rows) {
+      joined[static_cast<std::size_t>(row.a)].push_back(row.b);
+      joined[static_cast<std::size_t>(row.b)].push_back(row.a);
+      if (row.drive) is_left_out[static_cast<std::size_t>(row.a)] = is_left_out[static_cast<std::size_t>(row.b)] = 1;
+    }
+    std::vector<int> next;
+    const auto take = [&](int body) {
+      if (std::exchange(is_left_out[static_cast<std::size_t>(body)], char{1}) != 0) return;
+      owners_.insert(system.bodies[static_cast<std::size_t>(body)].name);
+      next.push_back(body);
+    };
+    for (int body = 1; body < system.body_count(); ++body) {
+      const std::string& name = system.bodies[static_cast<std::size_t>(body)].name;
+      if (owners_.count(name) > 0 && is_left_out[static_cast<std::size_t>(body)] != 0) owners_.erase(name);
+      else if (owners_.count(name) > 0) take(body);
+    }
+    while (!next.empty()) {
+      const int body = next.back();
+      next.pop_back();
+      for (const int other : joined[static_cast<std::size_t>(body)]) take(other);
+    }
+  }
+
   static bool is_place(const Channel& channel) { return channel.unit == "m" || channel.unit == "rad"; }
   [[nodiscard]] bool is_limited(const std::string& channel) const {
     return std::any_of(model_.criteria.begin(), model_.criteria.end(),
@@ -199,7 +240,7 @@ std::vector<Finding> growing_criteria(const LoadedModel& loaded, const RunResult
   std::unordered_set<std::string> known;
   const std::vector<LimitedChannel> all = limited_channels(loaded.model, result, judgement);
   const ReserveHistory history(result, all);
-  const Slides slides(loaded.model, result);
+  const Slides slides(loaded, result);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const LimitedChannel& limited = all[i];
     const ChannelRange& range = result.ranges[limited.channel];
@@ -232,7 +273,7 @@ std::vector<Finding> open_at_end(const LoadedModel& loaded, const RunResult& res
   const Model& model = loaded.model;
   if (model.criteria.empty()) return {}; // without criteria nothing is judged
   const RangeIndex ranges(result.ranges);
-  const Slides slides(model, result);
+  const Slides slides(loaded, result);
   std::vector<std::string> slip, are_open;
   for (const ElementEntry& entry : model.elements) {
     const std::string& name = entry.element->name;
@@ -255,10 +296,10 @@ std::vector<Finding> open_at_end(const LoadedModel& loaded, const RunResult& res
 
 namespace {
 
-// Union-find structure of bodies connected by elements. Bodies named by criteria, forces and drives are connected with the ground.
+// Union-find structure of bodies connected by elements. Bodies named by limits, forces and drives are connected with the ground.
 class Carriers {
 public:
-  // `asks`: bodies named by criteria count as carried, too. Finding them is slow, so this is requested only if some body is not carried
+  // `asks`: bodies named by limits count as carried, too. Finding them is slow, so this is requested only if some body is not carried
   // otherwise.
   Carriers(const Model& model, const RunResult& result, bool asks) : model_(model), result_(result), asks_(asks) {
     for (const Body& body : model.bodies)
@@ -268,7 +309,7 @@ public:
     for (const ElementEntry& entry : model.elements) add(entry, ranges);
     if (!asks) return;
     for (const Body& body : model.bodies)
-      if (is_asked(model, result, body.name)) join(of(body.name), 0);
+      if (is_limited(body.name)) join(of(body.name), 0);
     for (const DefinedChannel& channel : model.channels)
       if (std::any_of(model.criteria.begin(), model.criteria.end(),
                       [&](const Criterion& c) { return c.event.empty() && matches_pattern(channel.name, c.channel); })) {
@@ -294,7 +335,20 @@ private:
   // Joins the owner of a channel, "body" of "body.x", with the ground, so that it counts as carried.
   void join_named(const std::string& channel) {
     const std::size_t point = channel.rfind('.');
-    if (point != std::string::npos) join(of(channel.substr(0, point)), 0);
+    if (point != std::string::npos && !is_rotation(channel)) join(of(channel.substr(0, point)), 0);
+  }
+
+  // A body may turn as it likes while it falls: a limit of its rotation does not ask for the fall. Nor does a forbidden event.
+  static bool is_rotation(const std::string& channel) {
+    return channel.ends_with(".theta") || channel.ends_with(".omega") || channel.ends_with(".alpha");
+  }
+  [[nodiscard]] bool is_limited(const std::string& name) const {
+    return std::any_of(model_.criteria.begin(), model_.criteria.end(), [&](const Criterion& criterion) {
+      return criterion.event.empty() && std::any_of(result_.ranges.begin(), result_.ranges.end(), [&](const ChannelRange& range) {
+               const std::string& channel = range.channel->name;
+               return channel.starts_with(name + ".") && !is_rotation(channel) && matches_pattern(channel, criterion.channel);
+             });
+    });
   }
 
   void add(const ElementEntry& entry, const RangeIndex& ranges) {
@@ -314,7 +368,7 @@ private:
     }
     const bool is_load = entry.kind->has_constant_load != nullptr;
     const bool is_drive = !parts_of(entry.kind->fields, &element).empty();
-    if (is_load || is_drive || (asks_ && is_asked(model_, result_, element.name))) bodies.push_back(0);
+    if (is_load || is_drive || (asks_ && is_limited(element.name))) bodies.push_back(0);
     for (const int body : bodies) join(body, bodies.front());
   }
 
@@ -344,8 +398,8 @@ std::vector<Finding> bodies_that_fall(const LoadedModel& loaded, const RunResult
     findings.push_back(
         {"nothing_carries", FindingLevel::warning,
          "nothing carries body '" + body.name + "', which moves by " + quantity_text(way, "m") +
-             ": no element that touches it leads to the ground, and no criterion, force or drive names it. Give it a support, "
-             "or ask for what it should do",
+             ": no element that touches it leads to the ground, and no force, drive or limit of a place or velocity names it. Give it "
+             "a support, or ask for what it should do",
          body.where});
   }
   return findings;

@@ -332,6 +332,62 @@ TEST_CASE("a slide that is braked when the run ends is open if it stops beyond i
   }
 }
 
+TEST_CASE("a limit on a place of a body that slides on its contacts, or that such a body carries, is judged as that of the slide") {
+  // 2 m/s against mu g = 0.3 g: stops after 0.680 m. At 0.1 s it is at 0.185 m, and within as long again it would be at 0.35 m.
+  const auto slides = [](const std::string& channel, double within) {
+    return run_of(R"([simulation]
+end = 0.1
+[[body]]
+name = "box"
+mass = 90.0
+inertia = 10.0
+position = [0.0, 0.5]
+velocity = [2.0, 0.0]
+[[body]]
+name = "cargo"
+mass = 10.0
+inertia = 1.0
+position = [0.0, 0.5]
+velocity = [2.0, 0.0]
+[[element]]
+kind = "weld"
+name = "bolts"
+a = "cargo"
+b = "box"
+[[element]]
+kind = "unilateral_contact"
+name = "rear"
+a = { body = "box", point = [-0.5, -0.5] }
+preload = 490.5
+stiffness = 1e7
+damping = 1e4
+[[element]]
+kind = "unilateral_contact"
+name = "front"
+a = { body = "box", point = [0.5, -0.5] }
+preload = 490.5
+stiffness = 1e7
+damping = 1e4
+[[element]]
+kind = "coulomb_stick"
+name = "feet"
+contacts = ["rear", "front"]
+static_friction = 0.3
+[[acceptance]]
+name = "stays"
+channel = ")" + channel +
+                  "\"\nwithin = " + std::to_string(within) + "\n");
+  };
+  for (const char* const channel : {"box.x", "cargo.x", "feet.slide"}) {
+    CAPTURE(channel);
+    const Report beyond = slides(channel, 0.6), within = slides(channel, 0.75);
+    CHECK(has(beyond, "criterion_still_grows"));
+    CHECK(beyond.judgement.verdict == Verdict::open);
+    CHECK_FALSE(has(within, "criterion_still_grows"));
+    CHECK(has(within, "open_at_end") == (channel == std::string("cargo.x"))); // no criterion asks for the box or its slide
+  }
+}
+
 TEST_CASE("second derivatives at the end are those of the motion, however many periods the run has") {
   // x'' = −ω² x, 3200 periods: a ten-thousandth of the run is a third of a period.
   const Report report =
@@ -420,6 +476,8 @@ TEST_CASE("a body that falls is no fault where a criterion, a force or a drive n
   CHECK(has(run_of(text(contact("20.0"))), "nothing_carries")); // the floor lies 20 m below
   CHECK_FALSE(has(run_of(text(contact("1.0"))), "nothing_carries"));
   CHECK_FALSE(has(run_of(text("[[acceptance]]\nname = \"fall\"\nchannel = \"other.vy\"\nwithin = 20.0\n")), "nothing_carries"));
+  CHECK(has(run_of(text("[[acceptance]]\nname = \"turn\"\nchannel = \"other.theta\"\nwithin = 1.0\n")), "nothing_carries"));
+  CHECK(has(run_of(text(contact("20.0") + "[[acceptance]]\nname = \"lifts\"\nevent = \"opens\"\n")), "nothing_carries"));
   CHECK_FALSE(
       has(run_of(text(
               "[[element]]\nkind = \"force\"\nname = \"drag\"\na = \"other\"\ncoordinate = \"y\"\nformula = \"-'0.1 N s/m' * rate\"\n")),
