@@ -102,6 +102,7 @@ public:
 private:
   // Smallest reported rotation, rad; smaller ones are rocking on springs.
   static constexpr double k_tipped = 5.0 / 180.0 * std::numbers::pi;
+  static constexpr double k_upright = 0.7; // least cosine of the angle of a supporting contact to the vertical, about 45°
 
   const ElementEntry* entry_of(const std::string& element) const {
     const auto found = entry_of_.find(element);
@@ -124,21 +125,22 @@ private:
   }
 
   // Returns true if the contact supports a body against gravity, so that its opening is a lift.
-  bool is_upright(const std::string& element) const {
-    const auto [known, is_new] = is_upright_.try_emplace(element, false);
-    if (is_new) known->second = points_up(element);
+  bool is_upright(const std::string& element) const { return upward(element) > k_upright; }
+  // Returns the cosine of the angle between the force on a and the vertical; 0 without a contact or gravity.
+  double upward(const std::string& element) const {
+    const auto [known, is_new] = upward_.try_emplace(element, 0.0);
+    if (is_new) known->second = find_upward(element);
     return known->second;
   }
-  bool points_up(const std::string& element) const {
+  double find_upward(const std::string& element) const {
     const std::optional<ContactDescription> contact = contact_at(element);
-    if (!contact) return false;
+    if (!contact) return 0.0;
     const LoadedModel& loaded = *report_.run.loaded;
     const State reference = loaded.system->initial_state();
     const auto points = contact->points(*entry_of(element)->element, ScenePose(loaded.model, *loaded.system, reference));
-    if (points.empty()) return false;
-    const Vec2 &normal = points.front().normal, &gravity = loaded.model.header.gravity;
-    constexpr double k_upright = 0.7; // least cosine of the angle to the vertical, about 45°
-    return -normal.dot(gravity) > k_upright * gravity.norm();
+    const Vec2& gravity = loaded.model.header.gravity;
+    if (points.empty() || gravity == Vec2::Zero()) return 0.0;
+    return -points.front().normal.dot(gravity) / gravity.norm();
   }
 
   static std::string place_name(StorySubject what, const std::string& who) {
@@ -316,31 +318,77 @@ private:
             {StorySubject::would_slip, joint.joint, 1, *joint.first_slip, *joint.first_slip, *joint.first_slip, {}, {}, {}, true});
   }
 
-  void note_body(const std::string& marker, std::unordered_set<std::string>& bodies) const {
-    if (const Place place = place_of(report_.run.loaded->model, marker); place.body) bodies.insert(place.body->name);
+  // Bodies on corners or faces, each with the moving bodies on which it stands; "" for the ground.
+  using Floors = std::unordered_map<std::string, std::vector<std::string>>;
+
+  Floors floors() const {
+    Floors floors;
+    const Model& model = report_.run.loaded->model;
+    const auto note = [&](const std::string& above, const std::string& below, bool is_carried) {
+      const Place top = place_of(model, above), floor = place_of(model, below);
+      if (!top.body) return;
+      std::vector<std::string>& known = floors[top.body->name];
+      const std::string name = floor.body && !floor.body->fixed ? floor.body->name : "";
+      if (is_carried && std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+    };
+    for (const ElementEntry& entry : model.elements) {
+      const std::optional<ContactDescription> contact = contact_of(entry, model);
+      if (!contact || contact->standing == ContactDescription::Standing::none) continue;
+      const double up = upward(entry.element->name);
+      note(contact->a, contact->b, up > k_upright);
+      if (contact->standing == ContactDescription::Standing::both) note(contact->b, contact->a, up < -k_upright);
+    }
+    return floors;
   }
 
-  // Adds bodies on corners or faces that rotated far and that no joint guides. Rotation of wheels and cranks is intended.
-  void add_tipped() {
-    std::unordered_set<std::string> standing, guided;
-    for (const ElementEntry& entry : report_.run.loaded->model.elements) {
-      const std::optional<ContactDescription> contact = contact_of(entry, report_.run.loaded->model);
-      if (!contact) continue;
-      if (contact->standing != ContactDescription::Standing::none) note_body(contact->a, standing);
-      if (contact->standing == ContactDescription::Standing::both) note_body(contact->b, standing);
+  struct Tip {
+    StoryAmount turned;
+    double t = 0.0; // time of the largest rotation, s
+  };
+
+  // Returns the largest rotation of a body since the start against the ground, or against a body on which it stands.
+  std::optional<Tip> tip_of(const std::string& body, const std::string& floor) const {
+    const auto turned = excursion(body + ".theta", true);
+    const ChannelRange* const range = ranges_.find(body + ".theta");
+    if (!range || !turned) return {};
+    Tip tip{*turned, range->high.value - range->first >= range->first - range->low.value ? range->high.t : range->low.t};
+    const auto of_floor = floor.empty() ? std::nullopt : excursion(floor + ".theta", true);
+    if (!of_floor || of_floor->value == 0.0) return tip;
+    if (turned->value + of_floor->value < k_tipped) return tip;
+    tip.turned = {std::max(0.0, turned->value - of_floor->value), turned->unit, {}}; // a lower bound, if the angles were not sampled
+    const Trajectory& samples = *report_.run.result.trajectory;
+    const auto column = [&samples](const std::string& name) {
+      const auto& channels = samples.channels();
+      const auto found = std::find_if(channels.begin(), channels.end(), [&name](const Channel* c) { return c->name == name; });
+      return found == channels.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - channels.begin()));
+    };
+    const auto own = column(body + ".theta"), other = column(floor + ".theta");
+    if (!own || !other) return tip;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const double relative = samples.value(i, *own) - samples.value(i, *other) - range->first + ranges_.find(floor + ".theta")->first;
+      if (std::abs(relative) > tip.turned.value) tip.turned.value = std::abs(relative), tip.t = samples.time(i);
     }
+    return tip;
+  }
+
+  // Adds bodies on corners or faces that rotated far against all on which they stand, and that no joint guides. Rotation of wheels and
+  // cranks is intended.
+  void add_tipped() {
+    const Floors standing = floors();
     if (standing.empty()) return;
+    std::unordered_set<std::string> guided;
     const System& system = *report_.run.loaded->system;
     for (const RowSpec& row : system.rows)
       for (const int body : {row.a, row.b})
         if (body > 0) guided.insert(system.bodies[static_cast<std::size_t>(body)].name);
     for (const BodyData& body : system.bodies) {
-      if (!standing.contains(body.name) || guided.contains(body.name)) continue;
-      const ChannelRange* range = ranges_.find(body.name + ".theta");
-      const auto amount = excursion(body.name + ".theta", true);
-      if (!range || !amount || amount->value < k_tipped) continue;
-      const double t = range->high.value - range->first >= range->first - range->low.value ? range->high.t : range->low.t;
-      found_.push_back({StorySubject::tips, body.name, 1, t, t, t, amount, {}, {}, true});
+      const auto floor = standing.find(body.name);
+      if (floor == standing.end() || guided.contains(body.name)) continue;
+      std::optional<Tip> least = floor->second.empty() ? tip_of(body.name, "") : std::nullopt;
+      for (const std::string& below : floor->second)
+        if (const auto tip = tip_of(body.name, below); tip && (!least || tip->turned.value < least->turned.value)) least = tip;
+      if (!least || least->turned.value < k_tipped) continue;
+      found_.push_back({StorySubject::tips, body.name, 1, least->t, least->t, least->t, least->turned, {}, {}, true});
     }
   }
 
@@ -349,7 +397,7 @@ private:
   std::unordered_map<std::string, const ElementEntry*> entry_of_;
   std::unordered_map<std::string, std::size_t> place_; // index in found_ by element and subject
   std::unordered_map<std::string, SubjectDirection> ways_;
-  mutable std::unordered_map<std::string, bool> is_upright_; // cache of is_upright()
+  mutable std::unordered_map<std::string, double> upward_; // cache of upward()
   std::vector<Happening> found_;
 };
 

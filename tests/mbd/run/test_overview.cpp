@@ -55,6 +55,23 @@ TEST_CASE("a wheel leaves its track as a foot its floor: it lifts") {
   CHECK(entry_of(overview, "front tyre", StorySubject::opens) == nullptr);
 }
 
+TEST_CASE("a crate tips against the deck on which it stands, not with it") {
+  // The deck rolls by 20°. A cube stays on it; a crate of 0.2 m by 1 m tips at atan 0.2 = 11.3° of slope.
+  const auto tip_of = [](const std::vector<std::string>& overrides) {
+    std::vector<std::string> all{"simulation.end=12"};
+    all.insert(all.end(), overrides.begin(), overrides.end());
+    const Overview overview = overview_of(judged_run(load_model(STEPLAP_MODELS "/../docs/cookbook/ship.toml", all)));
+    const StoryEntry* const tip = entry_of(overview, "crate", StorySubject::tips);
+    return tip ? tip->amount->value : 0.0;
+  };
+  CHECK(tip_of({}) == 0.0);
+  const std::vector<std::string> slender{"body.crate.outline=[[-0.1, -0.5], [0.1, -0.5], [0.1, 0.5], [-0.1, 0.5]]"};
+  CHECK(tip_of(slender) > 1.0); // it falls on its side
+  std::vector<std::string> unsampled = slender;
+  unsampled.push_back("output.channels=[\"crate.x\"]");
+  CHECK(tip_of(unsampled) > 1.0 - 20.0 / 180.0 * 3.14159265358979); // at least the difference of both angles
+}
+
 TEST_CASE("utilisations are sorted, and those beyond their limits are the criteria that are not met") {
   for (const char* const model : {"paper/weak_clamping", "paper/no_interference", "layouts/three_limb_humping"}) {
     CAPTURE(model);
