@@ -60,9 +60,18 @@ bool share_letters(std::string a, std::string b) {
   return 2 * common.size() >= std::max(a.size(), b.size());
 }
 
+// Returns true if the word is the plural of a name: "bodies" of "body".
+bool is_plural(const std::string& word, const std::string& name) {
+  if (name.empty()) return false;
+  const std::string stem = name.substr(0, name.size() - 1);
+  return word == name + "s" || word == name + "es" || (name.back() == 'y' && word == stem + "ies");
+}
+
 } // namespace
 
 std::string nearest_name(const std::string& word, const std::vector<std::string>& known) {
+  const auto singular = std::find_if(known.begin(), known.end(), [&](const std::string& name) { return is_plural(word, name); });
+  if (singular != known.end()) return *singular;
   const auto abbreviated = std::find_if(known.begin(), known.end(),
                                         [&](const std::string& name) { return name.find('_') < name.size() && initials(name) == word; });
   if (abbreviated != known.end()) return *abbreviated;

@@ -287,7 +287,7 @@ private:
       close_call(*function);
       return add(function->op, begin, {first});
     }
-    if (!take(",")) fail("gives '" + word + "' too few values: it takes " + std::to_string(function->arguments));
+    if (!take(",")) fail("gives '" + word + "' too few values: it takes " + count_of(*function));
     const int second = choice();
     int value = -1;
     if (!function->takes_more) {
@@ -305,8 +305,12 @@ private:
 
   void close_call(const Function& function) {
     if (take(")")) return;
-    fail("lacks a ')' after what '" + std::string(function.name) + "' takes (" + std::to_string(function.arguments) +
-         (function.takes_more ? " or more)" : ")"));
+    fail("lacks a ')' after what '" + std::string(function.name) + "' takes (" + count_of(function) + ")");
+  }
+
+  // Returns how many values the function takes: "2", or "2 or more".
+  static std::string count_of(const Function& function) {
+    return std::to_string(function.arguments) + (function.takes_more ? " or more" : "");
   }
 
   Formula& made_;

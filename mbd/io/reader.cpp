@@ -126,6 +126,7 @@ private:
   void read_tables();
   void check_signal_units();
   std::string read_name(const Node& entry, const std::string& noun, std::vector<GivenField>& given);
+  std::string near_inherited(const std::string& array, const Node& entry) const;
   template <class Kind> const Kind* read_kind(const Node& entry, const std::string& noun, const std::vector<const Kind*>& kinds);
   TableReading reading(std::string subject, std::string owner = "");
   std::string add_inline_marker(const Node& table, const Field& field, const std::string& owner);
@@ -179,6 +180,9 @@ void Reader::read_header() {
   r.known_keys = names_.tables;
   r.known_keys.insert(r.known_keys.end(), names_.arrays.begin(), names_.arrays.end());
   given(Section::header) = {read_fields(document_.root, ModelHeader::fields(), &model_.header, r, problems_)};
+  if (!document_.root.find("body"))
+    for (const Node& child : document_.root.children)
+      if (nearest_name(child.key, {"body"}) == "body") excuse_empty_scene(); // reported as an unknown key
 }
 
 template <class T> void Reader::read_settings(const std::string& name, Section section, const FieldTable& fields, T& target) {
@@ -264,6 +268,20 @@ std::string Reader::read_name(const Node& entry, const std::string& noun, std::v
   return "";
 }
 
+// Returns the end of a message on an entry that has no kind, and perhaps is meant to change one of another file, under a misspelt name; ""
+// if no entry of another file has a similar name.
+std::string Reader::near_inherited(const std::string& array, const Node& entry) const {
+  std::vector<std::string> names;
+  for (const Node& other : document_.root.find(array)->children)
+    if (other.file != entry.file) names.push_back(entry_name(other));
+  const std::string near = nearest_name(entry_name(entry), names);
+  for (const Node& other : document_.root.find(array)->children)
+    if (!near.empty() && other.file != entry.file && entry_name(other) == near)
+      return "as nothing of this name is inherited: did you mean '" + near + "' (" + other.where().file + ":" +
+             std::to_string(other.where().line) + ")?";
+  return "";
+}
+
 template <class Kind> const Kind* Reader::read_kind(const Node& entry, const std::string& noun, const std::vector<const Kind*>& kinds) {
   const Node* name = entry.find("kind");
   if (name && name->type == Node::Type::text)
@@ -276,7 +294,8 @@ template <class Kind> const Kind* Reader::read_kind(const Node& entry, const std
   }
   const std::string subject = subject_text(noun, entry_name(entry));
   if (!name) {
-    add(entry.where(), subject + " needs 'kind', one of " + list);
+    const std::string inherited = near_inherited(noun, entry);
+    add(entry.where(), subject + " needs 'kind', " + (inherited.empty() ? "one of " + list : inherited));
   } else if (name->type != Node::Type::text) {
     add(name->where(), "'kind' of " + subject + ": expected a string, got " + name->type_name());
   } else {

@@ -212,6 +212,24 @@ std::string number_hint(std::string_view line, int column) {
   return "";
 }
 
+// Returns a hint for a text without quotes, as in "signal = thing". Empty if the word at `column` (from 1) is not the whole of a value, or
+// is none. TOML takes a value that begins with t, f, i or n for true, false, inf or nan, and reports the first letter that differs.
+std::string text_hint(std::string_view line, int column) {
+  const auto is_of_word = [](char c) { return is_letter(c) || is_digit(c) || c == '_' || c == '-' || c == '.'; };
+  std::size_t begin = std::min(line.size(), static_cast<std::size_t>(std::max(column, 1) - 1));
+  if (begin > 0 && (begin == line.size() || !is_of_word(line[begin]))) --begin;
+  while (begin > 0 && is_of_word(line[begin - 1])) --begin;
+  const auto before = begin == 0 ? std::string_view::npos : line.find_last_not_of(" \t", begin - 1);
+  if (before == std::string_view::npos || std::string_view("=[,").find(line[before]) == std::string_view::npos ||
+      line.substr(0, before + 1).find('=') == std::string_view::npos)
+    return ""; // it belongs to a key or to the name of a table
+  const std::string word(line.substr(begin, line.find_first_of(" \t\r,]}#=", begin) - begin));
+  for (const std::string_view open : {"\u201c", "\u201d", "\u201e", "\u2018", "\u2019"}) // typographic quotes
+    if (word.starts_with(open)) return ": quotes must be straight, as in \"box\"";
+  const bool is_value = word.empty() || !is_letter(word.front()) || word == "true" || word == "false" || word == "inf" || word == "nan";
+  return is_value ? "" : ": a text needs quotes: \"" + word + "\"";
+}
+
 // Returns what a text is that begins like a result in JSON or like a table of numbers; empty if it begins like neither.
 std::string other_format_hint(std::string_view text, int line) {
   constexpr std::string_view k_blank = " \t\r\n";
@@ -238,9 +256,11 @@ Node parse_toml(const std::string& text, const std::string* file) {
     return from_toml(root, file);
   } catch (const toml::parse_error& error) {
     const toml::source_region& region = error.source();
+    const std::string_view line = line_at(text, line_of(region));
+    const std::string of_number = number_hint(line, column_of(region));
     throw ModelError(Location{*file, line_of(region), column_of(region)},
                      "not valid TOML: " + std::string(error.description()) +
-                         number_hint(line_at(text, line_of(region)), column_of(region)) + other_format_hint(text, line_of(region)));
+                         (of_number.empty() ? text_hint(line, column_of(region)) : of_number) + other_format_hint(text, line_of(region)));
   }
 }
 

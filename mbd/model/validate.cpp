@@ -302,6 +302,12 @@ void Validation::check_bodies() {
   }
 }
 
+// Returns true if the marker, which has the name of its body (null: the ground), is not that body's centre of gravity with its axes.
+static bool is_elsewhere(const Marker& marker, const Body* own) {
+  if (marker.body != marker.name || (!own && marker.name != "ground")) return false;
+  return marker.at || marker.angle != 0.0 || marker.point.value_or(Vec2::Zero()) != (own ? own->cg : Vec2(Vec2::Zero()));
+}
+
 void Validation::check_markers() {
   Seen seen;
   for (std::size_t i = 0; i < model_.markers.size(); ++i) {
@@ -313,6 +319,9 @@ void Validation::check_markers() {
       if (const auto where = locate(Section::marker, i, "name", marker.where))
         add(*where, subject + " has the name of a body, which stands for that body's centre of "
                               "gravity: choose another name");
+    if (is_elsewhere(marker, model_.find_body(marker.name)))
+      if (const auto where = locate(Section::marker, i, "name", marker.where))
+        add(*where, subject + " has the name of its own body, which stands for that body's centre of gravity: choose another name");
     if (marker.point && marker.at)
       if (const auto where = locate(Section::marker, i, "at", marker.where))
         add(*where, subject + " gives both 'point' and 'at': give one of them");

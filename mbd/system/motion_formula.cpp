@@ -200,7 +200,9 @@ private:
 
   [[nodiscard]] std::vector<std::string> all_names() const {
     const Model& model = builder_.model();
-    std::vector<std::string> names = {"value", "rate"};
+    std::vector<std::string> names;
+    if (asked_.own_value != "-") names.emplace_back("value");
+    if (asked_.own_rate != "-") names.emplace_back("rate");
     for (const OwnState* state : own_states(model)) names.push_back(state->name);
     for (const Parameter& parameter : model.parameters.entries) names.push_back(parameter.name);
     for (const SignalEntry& signal : model.signals) names.push_back(signal.definition->name);
