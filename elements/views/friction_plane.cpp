@@ -155,7 +155,7 @@ std::string SharedContact::disagreement() const {
   if (std::abs(first - second) > k_same_load * std::max(first, second))
     return "the friction '" + name + "' carries " + quantity_text(first, "N") + " at rest in '" + a.model_name + "' and " +
            quantity_text(second, "N") + " in '" + b.model_name +
-           "': make the models agree, or give two different frictions different names by 'shared_friction'";
+           "': make the models agree, or give two different frictions different names, or, of a coulomb_stick, another 'shared_friction'";
   return "";
 }
 

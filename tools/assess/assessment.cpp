@@ -73,7 +73,7 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
   if (const std::string apart = unshared_planes(a.models, a.shared); !apart.empty())
     a.missing.push_back({Evidence::planes,
                          "Friction " + apart + " carries loads in different planes, and each is judged as if the other did not exist.",
-                         "If it is one friction, give both one name, or one 'shared_friction'."});
+                         "If it is one friction, give both one name, which a coulomb_stick may have as its 'shared_friction'."});
   for (const std::string& record : records) {
     throw_if_stopped(options, "before '" + record + "' was read");
     a.records.push_back(read_without_events(record, options.reading));

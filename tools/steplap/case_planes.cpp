@@ -70,8 +70,10 @@ void check_planes(const Planes& planes) {
     problems.push_back({planes[1].cases.front().where,
                         "no [[case]] has the name of one in " + first + ": give the cases that act in both planes one name"});
   else if (shared_frictions(planes).empty())
-    problems.push_back({first_friction(planes[1]), "no friction has the name of one in " + first +
-                                                       ": give the friction that carries both planes one name, or one 'shared_friction'"});
+    problems.push_back(
+        {first_friction(planes[1]),
+         "no friction has the name of one in " + first +
+             ": give the friction that carries both planes one name, which a coulomb_stick may have as its 'shared_friction'"});
   for (const auto& [i, k] : pairs) {
     const LoadCase &one = planes[0].cases[i], &other = planes[1].cases[k];
     if (one.plane.empty() || other.plane.empty() || one.plane == other.plane)
