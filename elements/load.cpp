@@ -119,8 +119,8 @@ const ElementKind& load_kind() {
     k.doc = "A force and a couple at a marker, constant or following signals.";
     FieldTable& f = k.fields;
     f.add("at", &Load::at).as(FieldType::marker).required().doc("marker where it acts");
-    f.add("force", &Load::force).in("N").doc("constant part");
-    f.add("couple", &Load::couple).in("N m").doc("constant part");
+    f.add("force", &Load::force).in("N").doc("constant part; zero if not given");
+    f.add("couple", &Load::couple).in("N m").doc("constant part; zero if not given");
     f.add("force_x", &Load::force_x).as(FieldType::signal).in("N").doc("signal added to the force along x");
     f.add("force_y", &Load::force_y).as(FieldType::signal).in("N").doc("signal added to the force along y");
     f.add("torque", &Load::torque).as(FieldType::signal).in("N m").doc("signal added to the couple");

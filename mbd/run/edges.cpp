@@ -46,6 +46,7 @@ std::optional<Finding> sunk(const LoadedModel& loaded, const ElementEntry& entry
     const Body* const body = place_of(loaded.model, marker).body;
     if (!body || body->fixed || !(body->mass > 0.0)) continue;
     const double reach = reaches[static_cast<std::size_t>(body - loaded.model.bodies.data())];
+    if (!(reach > 0.0)) continue; // a lumped mass, whose size the model does not tell
     const double own = std::max(reach, std::sqrt(body->inertia / body->mass));
     if (own < size) smaller = body, size = own;
   }

@@ -168,6 +168,19 @@ TEST_CASE("a body that sinks into bare ground by more than half of its size leav
   CHECK_FALSE(found(bed, "contact_sinks"));
 }
 
+TEST_CASE("a lumped mass may press a soft one-sided spring as deep as it will") {
+  const std::string text =
+      "gravity = [0.0, -1.0]\n[simulation]\nend = 0.1\ninitial = \"equilibrium\"\n[[body]]\nname = \"m\"\nmass = 1.0\n"
+      "inertia = 0.01\n[[element]]\nkind = \"prismatic\"\nname = \"guide\"\na = \"m\"\naxis = [0.0, 1.0]\n[[element]]\n"
+      "kind = \"unilateral_contact\"\nname = \"spring\"\na = \"m\"\nstiffness = 1.0\n[[acceptance]]\n"
+      "name = \"sag\"\nchannel = \"m.y\"\nwithin = 2.0\n";
+  RunOptions options;
+  options.estimating = Estimating::never;
+  const Report report = judged_run(load_model_text(text, "lumped.toml"), options);
+  CHECK(report.judgement.verdict == Verdict::hold);
+  CHECK_FALSE(found(report, "contact_sinks"));
+}
+
 TEST_CASE("how far a foot was driven beyond its edge, and when, is that of its motion") {
   // x = A sin 2πft on a deck that ends at 1 m: at most A − 1 beyond, at a quarter of the period. Within a step the motion is a cubic, whose
   // error is (2πf h)⁴/384 of A: below 1e-4 for steps up to a fifth of a radian.
