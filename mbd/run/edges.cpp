@@ -1,5 +1,6 @@
 #include "mbd/run/edges.h"
 
+#include "mbd/model/action.h"
 #include "mbd/run/body_reach.h"
 #include "mbd/run/quantity_text.h"
 #include "mbd/run/range_index.h"
@@ -34,11 +35,25 @@ bool has_ends(const ElementEntry& entry) {
   return ends && std::holds_alternative<Vec2>(ends->get(entry.element.get()));
 }
 
+// Returns true if the contact does not act at the end although its parts overlap there: an action has let go of it, and what it lay on
+// passes through. Its depth is then no penetration.
+bool is_let_go(const Model& model, const RangeIndex& ranges, const std::string& contact) {
+  const ChannelRange *const gap = ranges.find(contact + ".gap"), *const force = ranges.find(contact + ".force");
+  if (!gap || !force || force->final != 0.0 || !(gap->final < 0.0)) return false;
+  return std::any_of(model.elements.begin(), model.elements.end(), [&contact](const ElementEntry& entry) {
+    const auto* const action = as_action(*entry.element);
+    return action && std::any_of(action->steps.begin(), action->steps.end(), [&contact](const std::string& text) {
+             const ActionStepText step = action_step(text);
+             return step.name == contact && (step.verb == ActionVerb::release || step.verb == ActionVerb::hold);
+           });
+  });
+}
+
 // Returns the finding for a contact whose parts give no limit of its depth, for example on bare ground, and that was pressed `depth` metres
-// deep, more than half of the size of the smaller body that it carries. Such a depth is the stroke of a spring, or a wrong stiffness.
+// deep, more than a fifth of the size of the smaller body that it carries. Such a depth is the stroke of a spring, or a wrong stiffness.
 std::optional<Finding> sunk(const LoadedModel& loaded, const ElementEntry& entry, const ContactDescription& contact,
                             const ChannelRange& gap, const std::vector<double>& reaches) {
-  constexpr double k_deep = 0.5; // share of the distance of the farthest point from the centre of gravity, or of the radius of gyration
+  constexpr double k_deep = 0.2; // share of the distance of the farthest point from the centre of gravity, or of the radius of gyration
   if (contact.is_preloaded || has_ends(entry)) return std::nullopt; // a soft spring may be preloaded over a long way
   const Body* smaller = nullptr;
   double size = std::numeric_limits<double>::infinity();
@@ -69,7 +84,7 @@ std::vector<Finding> contacts_too_deep(const LoadedModel& loaded, const std::vec
     const Element& element = *entry.element;
     const auto contact = contact_of(entry, loaded.model);
     const ChannelRange* const gap = contact ? range_of.find(element.name + ".gap") : nullptr;
-    if (!gap || !(gap->low.value < 0.0)) continue;
+    if (!gap || !(gap->low.value < 0.0) || is_let_go(loaded.model, range_of, element.name)) continue;
     if (!contact->depth_limit) {
       if (reaches.empty()) reaches = body_reaches(loaded.model);
       if (auto finding = sunk(loaded, entry, *contact, *gap, reaches)) found.push_back(std::move(*finding));

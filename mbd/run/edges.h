@@ -16,7 +16,7 @@ namespace steplap {
 [[nodiscard]] std::vector<Finding> contacts_beyond_edges(const LoadedModel& loaded, const RunResult& result);
 
 /// Returns one finding for each contact whose largest penetration in the run exceeds ContactDescription::depth_limit, or, without a limit,
-/// half of the size of the smaller body.
+/// a fifth of the size of the smaller body.
 [[nodiscard]] std::vector<Finding> contacts_too_deep(const LoadedModel& loaded, const std::vector<ChannelRange>& ranges);
 
 } // namespace steplap
