@@ -278,6 +278,10 @@ TEST_CASE("what is wrong with a formula is said with its element, and what would
     CAPTURE(written);
     CHECK(message(written).find(expected) != std::string::npos);
   };
+  const std::string along_own_axis = message("'1 N/m' * value\"; coordinate = \"own_x");
+  CHECK(along_own_axis.find("there is no 'value'") != std::string::npos);
+  CHECK(along_own_axis.find("did you mean") == std::string::npos); // least of all 'value'
+  says("max('5 N')", "it takes 2 or more");
   says("5", "has to be in 'N', and the formula has no unit");
   says("'5 kg'", "has to be in 'N'");
   says("-'3 N s/m' * laod.vx", "there is no 'laod.vx' (did you mean 'load.vx'?)");
