@@ -70,8 +70,8 @@ bool is_part(const Model& model, const std::string& name) {
   });
 }
 
-// Returns the first signal of the model's own file that varies and that nothing uses, if nothing else loads the machine: no constant load, no
-// drive, no formula of the time and no action. A machine under another load may have spare signals.
+// Returns the first signal of the model's own file that varies and that nothing uses, if nothing else loads the machine: no constant load,
+// no drive, no formula of the time and no action. A machine under another load may have spare signals.
 const SignalEntry* idle_load(const Model& model, const std::unordered_set<std::string>& used, SignalNetwork& network) {
   const auto is_load = [](const ElementEntry& entry) {
     return as_action(*entry.element) || uses_time(entry) ||
