@@ -386,7 +386,7 @@ void Reader::read_tables() {
 
 // Checks that the signals of elements have fitting units: "0.5 gravity" is not a force, "20 deg" not a displacement.
 void Reader::check_signal_units() {
-  SignalUnits units(*parameters_);
+  SignalUnits units(model_, *parameters_);
   for (std::size_t i = 0; i < model_.signals.size(); ++i) units.enter(model_.signals[i], given(Section::signal)[i]);
   const auto check = [&](const std::vector<GivenField>& fields, const FieldTable& table, const void* object, const std::string& subject) {
     for (const GivenField& field : fields) {

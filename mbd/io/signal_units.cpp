@@ -3,12 +3,13 @@
 #include "mbd/io/column_unit.h"
 #include "mbd/io/parameters_reader.h"
 #include "mbd/io/units.h"
+#include "mbd/model/signal_use.h"
+
+#include <algorithm>
 
 namespace steplap {
 
 namespace {
-
-constexpr int k_deepest = 100; // nesting of signals; circular references are reported elsewhere
 
 bool has_unit(const std::string& text) { return text.find_first_not_of("0123456789.+-eE \t\r\n") != std::string::npos; }
 
@@ -38,7 +39,16 @@ std::string unit_of_file(const SignalEntry& entry) {
   return unit_in_file(text_of(entry, "file"), text_of(entry, "column"));
 }
 
-bool is_factor(const GivenField& given) { return given.field->name == "factor" || given.field->name == "factors"; }
+// Returns true for factors that the file gives: numbers other than 1, and all with a unit.
+bool is_factor(const GivenField& given) {
+  if (!given.node || (given.field->name != "factor" && given.field->name != "factors")) return false;
+  const auto is_one = [](const Node& node) {
+    return (node.type == Node::Type::integer && std::get<long>(node.scalar) == 1) ||
+           (node.type == Node::Type::number && std::get<double>(node.scalar) == 1.0);
+  };
+  const std::vector<Node>& items = given.node->children;
+  return given.node->type == Node::Type::array ? !std::all_of(items.begin(), items.end(), is_one) : !is_one(*given.node);
+}
 
 } // namespace
 
@@ -51,39 +61,33 @@ std::string SignalUnits::problem_of(const Node& node, const std::string& unit) c
   return problem;
 }
 
-void SignalUnits::enter(const SignalEntry& entry, const std::vector<GivenField>& given) {
-  signals_[entry.definition->name] = {&entry, &given};
+std::string SignalUnits::misfit(const std::string& signal, const std::string& unit) const {
+  const auto has_factors = [this](const SignalEntry& entry) {
+    const std::vector<GivenField>& given = *given_.at(&entry);
+    return std::any_of(given.begin(), given.end(), is_factor);
+  };
+  for (const SignalEntry* entry : signals_in_unit_of(model_, signal, has_factors))
+    if (const std::string problem = misfit_of(*entry, unit); !problem.empty())
+      return "its signal '" + entry->definition->name + "' " + problem;
+  return "";
 }
 
-std::string SignalUnits::misfit(const std::string& signal, const std::string& unit) const { return misfit(signal, unit, 0); }
-
-std::string SignalUnits::misfit(const std::string& signal, const std::string& unit, int depth) const {
-  const auto found = signals_.find(signal);
-  if (found == signals_.end() || found->second.entry->kind->name == "product" || depth > k_deepest) return "";
-  bool is_of_its_parts = true;
-  for (const GivenField& given : *found->second.given) {
-    if (!given.node || !given.is_usable) return "";
-    is_of_its_parts = is_of_its_parts && !is_factor(given);
-  }
-  const std::string in_file = unit_of_file(*found->second.entry);
-  const std::string own = in_file.empty() ? own_unit(found->second.entry->kind->name, *found->second.given) : in_file;
+// Returns the problem with the signal's own values.
+std::string SignalUnits::misfit_of(const SignalEntry& entry, const std::string& unit) const {
+  const std::vector<GivenField>& all = *given_.at(&entry);
+  if (std::any_of(all.begin(), all.end(), [](const GivenField& given) { return !given.node || !given.is_usable; })) return "";
+  const std::string in_file = unit_of_file(entry);
+  const std::string own = in_file.empty() ? own_unit(entry.kind->name, all) : in_file;
   if (!own.empty()) {
     const Quantity one = parse_quantity("1 " + own, unit);
-    if (one.problem.empty()) return "";
-    return "its signal '" + signal + "' is in " + own + (in_file.empty() ? "" : " by the header of its file") + ": " + one.problem;
+    return one.problem.empty() ? "" : "is in " + own + (in_file.empty() ? "" : " by the header of its file") + ": " + one.problem;
   }
-  for (const GivenField& given : *found->second.given) {
+  for (const GivenField& given : all) {
     const Field& field = *given.field;
     std::string problem;
-    if (field.unit == "*" && !is_factor(given)) problem = problem_of(*given.node, unit);
+    if (is_in_unit_of_signal(*entry.kind, field)) problem = problem_of(*given.node, unit);
     if (field.name == "unit" && field.type == FieldType::text && !given.node->text().empty()) // the unit of the values in a record
       problem = problem_of_text(*given.node, "1 " + given.node->text(), unit);
-    if (!problem.empty()) return "its signal '" + signal + "' " + problem;
-    if (!is_of_its_parts) continue;
-    if (field.type == FieldType::signal) problem = misfit(given.node->text(), unit, depth + 1);
-    if (field.type == FieldType::signals)
-      for (const Node& part : given.node->children)
-        if (problem.empty()) problem = misfit(part.text(), unit, depth + 1);
     if (!problem.empty()) return problem;
   }
   return "";

@@ -3,6 +3,7 @@
 #include "mbd/base/number_text.h"
 #include "mbd/formula/unit_dimension.h"
 #include "mbd/model/field_units.h"
+#include "mbd/model/signal_use.h"
 #include "mbd/model/validate.h"
 
 #include <charconv>
@@ -242,6 +243,9 @@ std::string unit_of(const Model& model, const std::string& path) {
   if (const std::optional<std::size_t> parameter = parameter_at(model, path)) return unit_text(model.parameters.entries[*parameter].powers);
   const Target target = Resolver(model, path).resolve();
   const bool is_second = target.field->type == FieldType::points && target.items.back() == 1;
+  for (const SignalEntry& entry : model.signals)
+    if (entry.definition.get() == target.object && is_in_unit_of_signal(*entry.kind, *target.field))
+      return unit_taken(model, entry.definition->name);
   return is_second && !target.field->unit2.empty() ? target.field->unit2 : unit_in(*target.fields, *target.field, target.object);
 }
 

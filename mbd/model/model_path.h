@@ -26,7 +26,8 @@ void set_value(Model& model, const std::string& path, const FieldValue& value);
 /// Returns the value as a number. Throws ModelError if it is not a number.
 [[nodiscard]] double number_of(const Model& model, const std::string& path);
 
-/// Returns the unit of number_of(); "*" if the field accepts any unit. Throws ModelError if the value is not a number.
+/// Returns the unit of number_of(); "*" if the field accepts any unit. Values of a signal have the unit in which elements and tables take it
+/// (signal_use.h). Throws ModelError if the value is not a number.
 [[nodiscard]] std::string unit_of(const Model& model, const std::string& path);
 
 } // namespace steplap

@@ -7,6 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <functional>
+
 using namespace steplap;
 using namespace steplap::testing;
 
@@ -102,6 +104,105 @@ TEST_CASE("a wrong name is one mistake") {
     CHECK(has(said, "the name of response '" + name + "'"));
     CHECK(said.find("error:") == said.rfind("error:"));
   }
+}
+
+namespace {
+
+/// A body that moves freely, the signal "push" with its value, and what takes "use".
+std::string scene_of(const std::string& push, const std::string& use, const std::string& element) {
+  return "gravity = [0, 0]\n[simulation]\nend = 0.1\n[[body]]\nname = \"box\"\nmass = 1\ninertia = 1\n[[signal]]\nname = \"push\"\n" +
+         push + "\n" + use + "[[element]]\nname = \"user\"\n" + element + "\n";
+}
+
+bool is_accepted(const std::function<void()>& read) {
+  try {
+    read();
+    return true;
+  } catch (const ModelError&) {
+    return false;
+  }
+}
+
+} // namespace
+
+TEST_CASE("a study takes a signal's value in the units that an override takes it in, and in no other") {
+  struct Taker {
+    const char *element, *fits; ///< "": only numbers and angles fit
+  };
+  const Taker takers[] = {
+      {"kind = \"prescribed_motion\"\na = \"box\"\ncoordinate = \"x\"\nas = \"acceleration\"\nsignal = \"use\"", "m/s^2"},
+      {"kind = \"prescribed_motion\"\na = \"box\"\ncoordinate = \"x\"\nas = \"velocity\"\nsignal = \"use\"", "m/s"},
+      {"kind = \"prescribed_motion\"\na = \"box\"\ncoordinate = \"angle\"\nas = \"velocity\"\nsignal = \"use\"", "rad/s"},
+      {"kind = \"prescribed_motion\"\na = \"box\"\ncoordinate = \"x\"\nas = \"position\"\nsignal = \"use\"", "m"},
+      {"kind = \"load\"\nat = \"box\"\nforce_x = \"use\"", "N"},
+      {"kind = \"load\"\nat = \"box\"\ntorque = \"use\"", "N m"},
+      {"kind = \"motor\"\na = \"box\"\ncoordinate = \"angle\"\ntarget = \"use\"\nproportional = 1", "rad"},
+      {"kind = \"joint_friction\"\na = \"box\"\ncoordinate = \"x\"\nholds = 1\nsignal = \"use\"", ""}};
+  const std::string constant = "kind = \"constant\"\nvalue = 1", zero = "[[signal]]\nname = \"other\"\nkind = \"constant\"\nvalue = 0\n",
+                    use = "[[signal]]\nname = \"use\"\n";
+  struct Way {
+    std::string use;
+    bool is_in_its_unit; ///< the values of "push" are those of "use"
+  };
+  const Way ways[] = {{use + "kind = \"sum\"\nsignals = [\"push\", \"other\"]\n" + zero, true},
+                      {use + "kind = \"sum\"\nsignals = [\"push\"]\nfactors = [2]\n", false},
+                      {use + "kind = \"scaled\"\nsignal = \"push\"\ndelay = 0.0\n", true},
+                      {use + "kind = \"scaled\"\nsignal = \"push\"\nfactor = 1\n", true},
+                      {use + "kind = \"scaled\"\nsignal = \"push\"\nfactor = 3.0\n", false},
+                      {use + "kind = \"product\"\nsignals = [\"push\", \"other\"]\n" + zero, false},
+                      {use + constant + "\n", false}}; // "push" is not used
+  struct Kind {
+    const char *push, *path;
+  };
+  const Kind kinds[] = {{"kind = \"sine\"\namplitude = 1\nfrequency = 1", "amplitude"},
+                        {"kind = \"half_sine\"\npeak = 1\nduration = 1", "peak"},
+                        {"kind = \"trapezoid\"\npeak = 1\nrise = 0.1\nfall = 0.1\nhold = 1", "peak"},
+                        {"kind = \"harmonics\"\namplitudes = [1]\nfrequencies = [1]", "amplitudes.0"},
+                        {"kind = \"harmonics\"\namplitudes = [1]\nfrequencies = [1]\noffset = 1", "offset"},
+                        {"kind = \"chirp\"\namplitude = 1\nfrom = 1\nto = 2\nduration = 1", "amplitude"},
+                        {"kind = \"random\"\nfactor = 1\nfrequencies = [1, 2]\ndensities = [1, 1]\nduration = 1", "factor"}};
+  const std::vector<std::string> units{"m/s^2", "gravity", "m/s",   "km/h", "m",   "mm", "N", "kN",
+                                       "N m",   "kN m",    "rad/s", "rad",  "deg", "Hz", "kg"};
+  const StudyBench bench;
+  long fitting = 0;
+  const auto check = [&](const std::string& scene, const std::string& path, const std::string& fits, bool is_known) {
+    const std::string model = bench.write("model.toml", scene);
+    CAPTURE(scene);
+    CAPTURE(path);
+    REQUIRE_NOTHROW((void)study::read_study_model(model));
+    const auto override_takes = [&](const std::string& value) {
+      return is_accepted([&] { (void)study::read_study_model(model, {path + "=" + value}); });
+    };
+    const auto study_takes = [&](const std::string& value) {
+      return is_accepted([&] {
+        (void)study::parse_study("kind = \"sweep\"\nmodel = \"model.toml\"\n[[variable]]\nname = \"x\"\npath = \"" + path +
+                                     "\"\nvalues = [" + value + "]\n[[response]]\nname = \"y\"\nchannel = \"box.x\"\nwhat = \"final\"\n",
+                                 bench.at("study.toml"));
+      });
+    };
+    CHECK(override_takes("2"));
+    CHECK(study_takes("2"));
+    for (const std::string& unit : units) {
+      CAPTURE(unit);
+      const bool is_taken = override_takes("2 " + unit);
+      CHECK(study_takes("\"2 " + unit + "\"") == is_taken);
+      if (!is_known) CHECK(is_taken);
+      fitting += is_known && is_taken;
+      if (is_known && unit == fits) CHECK(is_taken);
+      if (is_known && unit == "kg") CHECK_FALSE(is_taken); // nothing takes masses
+    }
+  };
+  for (const Taker& taker : takers) {
+    const std::string direct = scene_of(constant, zero, taker.element);
+    std::string named = direct;
+    for (std::size_t at = named.find("\"use\""); at != std::string::npos; at = named.find("\"use\"")) named.replace(at, 5, "\"push\"");
+    check(named, "signal.push.value", taker.fits, true);
+    for (const Way& way : ways) check(scene_of(constant, way.use, taker.element), "signal.push.value", taker.fits, way.is_in_its_unit);
+  }
+  for (const Kind& kind : kinds)
+    check(scene_of(kind.push, use + "kind = \"sum\"\nsignals = [\"push\"]\n", takers[0].element), std::string("signal.push.") + kind.path,
+          "m/s^2", true);
+  CHECK(fitting > 40);
 }
 
 TEST_CASE("the examples are read without a complaint") {
