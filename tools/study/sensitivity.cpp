@@ -119,12 +119,14 @@ Answer elasticities(StudyRun& run) {
 
 // --- Morris' screening --------------------------------------------------------------------------
 
+// Returns the probability at which a distribution is evaluated: the tails of unbounded ones are excluded.
+double without_tails(double cube) { return std::clamp(cube, 0.01, 0.99); }
+
 // Computes the values of the variables at a point of the unit cube.
 void values_at_cube(const StudyRun& run, const std::vector<double>& cube, std::vector<double>& points) {
   const std::size_t n = run.law.dimension();
   std::vector<double> u(n), values(run.law.nominal().size());
-  for (std::size_t d = 0; d < n; ++d)
-    u[d] = normal_quantile(std::clamp(cube[d], 0.01, 0.99)); // excludes the tails of unbounded distributions
+  for (std::size_t d = 0; d < n; ++d) u[d] = normal_quantile(without_tails(cube[d]));
   run.law.values_at(u.data(), values.data());
   for (std::size_t d = 0; d < n; ++d) { // variables with a range instead of a distribution
     const std::size_t i = run.law.random()[d];
@@ -153,9 +155,8 @@ struct Effects {
 struct Trajectories {
   struct Move {
     std::size_t variable;
-    double sign;
+    double step; // signed change of the variable's probability, or of its place in its range
   };
-  double jump = 0.0; // change of a variable per move, as a fraction of its range
   // values of all variables at all points, trajectory by trajectory; each has one point more than moves
   std::vector<double> points;
   std::vector<std::vector<Move>> moves; // moves of each trajectory
@@ -165,30 +166,33 @@ Trajectories drawn_trajectories(const StudyRun& run, const SensitivitySettings& 
   const std::size_t n = run.law.dimension();
   const CounterRandom random(static_cast<std::uint64_t>(run.study().seed), 6);
   const double p = static_cast<double>(s.levels), jump = p / (2.0 * (p - 1.0));
-  Trajectories drawn{jump, {}, {}};
+  Trajectories drawn;
   for (long t = 0; t < s.trajectories; ++t) {
     const auto draw = [&](std::size_t k) { return random.uniform(static_cast<std::uint64_t>(t), static_cast<std::uint32_t>(k)); };
     std::vector<double> cube(n);
-    std::vector<Trajectories::Move> moves(n);
+    std::vector<Trajectories::Move> moves(n); // on the grid
     for (std::size_t d = 0; d < n; ++d) {
       // a point in the lower half of the levels; moves in the other direction start in the upper half
       cube[d] = std::floor(draw(d) * p / 2.0) / (p - 1.0);
-      moves[d] = {d, draw(n + d) < 0.5 ? -1.0 : 1.0};
-      if (moves[d].sign < 0.0) cube[d] += jump;
+      moves[d] = {d, draw(n + d) < 0.5 ? -jump : jump};
+      if (moves[d].step < 0.0) cube[d] += jump;
     }
     for (std::size_t d = n; d-- > 1;) std::swap(moves[d], moves[static_cast<std::size_t>(draw(2 * n + d) * static_cast<double>(d + 1))]);
     values_at_cube(run, cube, drawn.points);
-    for (const Trajectories::Move& move : moves) {
-      cube[move.variable] += move.sign * jump;
+    for (Trajectories::Move& move : moves) {
+      double& place = cube[move.variable];
+      const double from = place;
+      place += move.step;
       values_at_cube(run, cube, drawn.points);
+      if (run.study().variables[run.law.random()[move.variable]].has_distribution()) move.step = without_tails(place) - without_tails(from);
     }
     drawn.moves.push_back(std::move(moves));
   }
   return drawn;
 }
 
-// Returns the elementary effects of each variable on each number: the signed change divided by `jump`. Unknown effects are counted in
-// `missing`.
+// Returns the elementary effects of each variable on each number: the change divided by the step that was made. Unknown effects are counted
+// in `missing`.
 std::vector<std::vector<Effects>> effects_of(const Trajectories& drawn, const std::vector<StoredSample>& rows, std::size_t count,
                                              std::size_t n, long& missing) {
   std::vector<std::vector<Effects>> effects(count, std::vector<Effects>(n));
@@ -198,7 +202,7 @@ std::vector<std::vector<Effects>> effects_of(const Trajectories& drawn, const st
       const Trajectories::Move& move = drawn.moves[t][k];
       const std::vector<double> before = numbers_of(rows[row], count), after = numbers_of(rows[row + 1], count);
       for (std::size_t r = 0; r < count; ++r) {
-        const double e = move.sign * (after[r] - before[r]) / drawn.jump;
+        const double e = (after[r] - before[r]) / move.step;
         if (std::isfinite(e)) effects[r][move.variable].all.push_back(e);
         else ++missing;
       }

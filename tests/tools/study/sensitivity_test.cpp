@@ -138,6 +138,21 @@ TEST_CASE("Morris' screening of a sum: every effect is the coefficient") {
   CHECK(bench.find("morris", "sigma of x3").value > 0.1); // of a square the effects differ
 }
 
+// The ends of a distribution are not reached: the steps there are shorter than those of the grid. A uniform distribution's values are
+// proportional to its probability, so that every effect of 5 x over [0, 1] is 5 exactly, also where the grid has other steps between.
+TEST_CASE("Morris' screening divides by the steps that it makes") {
+  for (const int levels : {4, 6, 10}) {
+    StudyBench bench;
+    const std::string x = "[[variable]]\nname = \"x\"\ndistribution = \"uniform\"\nlow = 0\nhigh = 1\n";
+    REQUIRE(bench.run(head("morris", "levels = " + std::to_string(levels) + "\n") + x + uniform("z", 0, 2) + response("5*x - z")).code ==
+            0);
+    CAPTURE(levels);
+    CHECK(bench.find("morris", "mu* of x").value == doctest::Approx(5.0).epsilon(1e-9)); // rounding of quantiles: 1e-12
+    CHECK(bench.find("morris", "sigma of x").value < 1e-9);
+    CHECK(bench.find("morris", "mu* of z").value == doctest::Approx(2.0).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("a tornado's bars, the widest first") {
   StudyBench bench;
   REQUIRE(bench.run(head("tornado") + uniform("small", 0, 1) + uniform("large", -2, 2) + response("small + 3*large")).code == 0);
