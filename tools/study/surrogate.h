@@ -33,6 +33,7 @@ public:
 
 private:
   struct Fit;
+  void factorise(const std::vector<double>& points, const std::vector<double>& values, double nugget);
   std::size_t dimension_;
   std::unique_ptr<Fit> fit_;
 };
