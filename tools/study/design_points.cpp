@@ -11,7 +11,9 @@
 #include <openturns/SORM.hxx>
 #include <openturns/ThresholdEvent.hxx>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace steplap::study {
 
@@ -188,8 +190,19 @@ bool add_point(DesignPoint point, std::vector<DesignPoint>& points) {
   return true;
 }
 
-// Runs one search until sample number `last`; records the reason if it ends early. Returns true if it found a new point.
-bool search_from(LimitFunction& limit, const std::vector<double>& start, long last, DesignPoints& found) {
+// Returns true if sampling needs this point: it is no nearer than 1.5 standard deviations to any other, where a sample around that has three
+// times the weight, and its first-order probability is not below a hundredth of theirs.
+bool is_needed(const DesignPoint& point, const std::vector<DesignPoint>& others) {
+  constexpr double k_apart = 1.5, k_little = 0.01;
+  return point.is_found && std::none_of(others.begin(), others.end(), [&](const DesignPoint& other) {
+           const bool is_little = normal_cdf(-std::abs(point.beta)) < k_little * normal_cdf(-std::abs(other.beta));
+           return other.is_found && (is_little || distance_between(point.u, other.u) < k_apart);
+         });
+}
+
+// Runs one search until sample number `last`; records the reason if it ends early. Returns true if it found a new point. `is_away`: the start
+// is away from all points.
+bool search_from(LimitFunction& limit, const std::vector<double>& start, long last, DesignPoints& found, bool is_away) {
   ++found.starts;
   // searches that failed closer than this to the surface, relative, are treated as known: other starts would oscillate there, too
   constexpr double k_near_surface = 1e-2;
@@ -198,8 +211,14 @@ bool search_from(LimitFunction& limit, const std::vector<double>& start, long la
     if (p.is_found || p.off_surface < k_near_surface) known.push_back(p.u);
   const SearchEnd end = search_design_point(limit, start, known, last);
   if (!end.trouble.empty() && found.failed_starts++ == 0) found.trouble = end.trouble;
+  found.fruitless += is_away && (end.is_known || end.u != start); // a search that could not leave its start has seen nothing
   if (end.is_known || end.is_bad) return false;
-  return add_point(point_of(limit, end, found.is_origin_failing), found.points);
+  DesignPoint point = point_of(limit, end, found.is_origin_failing);
+  if (is_needed(point, found.points)) {
+    ++found.needed;
+    found.fruitless = 0;
+  }
+  return add_point(std::move(point), found.points);
 }
 
 void sort_points(std::vector<DesignPoint>& points) {
@@ -214,19 +233,20 @@ long budget_of(const LimitFunction& limit) {
   return limit.settings().search_samples.value_or(300 + 50 * static_cast<long>(limit.dimension()));
 }
 
+std::vector<double> random_direction(const CounterRandom& random, std::uint64_t k, std::size_t dimension) {
+  std::vector<double> a;
+  for (std::size_t i = 0; i < dimension; ++i) a.push_back(random.normal(k, static_cast<std::uint32_t>(i)));
+  const double length = length_of(a.data(), dimension);
+  for (double& x : a) x /= length;
+  return a;
+}
+
 // Returns well separated directions: of many random ones, repeatedly the one farthest from all chosen before.
 std::vector<std::vector<double>> spread_directions(const LimitFunction& limit, long count) {
   constexpr long k_pool = 20; // candidates per direction
   const CounterRandom random(static_cast<std::uint64_t>(limit.study().seed), 3);
   std::vector<std::vector<double>> pool, directions;
-  for (long k = 1; k <= k_pool * count; ++k) {
-    std::vector<double> a;
-    for (std::size_t i = 0; i < limit.dimension(); ++i)
-      a.push_back(random.normal(static_cast<std::uint64_t>(k), static_cast<std::uint32_t>(i)));
-    const double length = length_of(a.data(), a.size());
-    for (double& x : a) x /= length;
-    pool.push_back(std::move(a));
-  }
+  for (long k = 1; k <= k_pool * count; ++k) pool.push_back(random_direction(random, static_cast<std::uint64_t>(k), limit.dimension()));
   std::vector<double> nearest(pool.size(), -1.0); // largest cosine of the angle to a chosen direction
   for (std::size_t next = 0; static_cast<long>(directions.size()) < count;) {
     directions.push_back(pool[next]);
@@ -236,10 +256,12 @@ std::vector<std::vector<double>> spread_directions(const LimitFunction& limit, l
   return directions;
 }
 
+constexpr double k_far = 3.0; // distance of starts from the origin
+
 // Chooses the start points. The limit state is evaluated in three well separated directions per start. Points with the lowest values
 // (highest, if the origin fails) are chosen that are well separated from each other and from known design points.
 std::vector<std::vector<double>> starts_of(LimitFunction& limit, long count, const DesignPoints& found) {
-  constexpr double k_far = 3.0, k_apart = 0.9; // cosine between two directions
+  constexpr double k_apart = 0.9; // cosine between two directions
   std::vector<std::vector<double>> looks = spread_directions(limit, 3 * count);
   std::vector<double> points;
   for (std::vector<double>& u : looks) {
@@ -267,6 +289,71 @@ std::vector<std::vector<double>> starts_of(LimitFunction& limit, long count, con
   return starts;
 }
 
+// Returns directions away from all points, for searches of unknown ones. Many limit states have design points at right angles. From a place
+// without a component along the known points, the gradient points to an unknown one.
+class AwayDirections {
+public:
+  AwayDirections(const LimitFunction& limit, const DesignPoints& found)
+      : random_(static_cast<std::uint64_t>(limit.study().seed), 14), dimension_(limit.dimension()), found_(found),
+        next_(static_cast<std::uint64_t>(k_pool * found.starts)) {}
+
+  // In turn a direction at right angles to all points, the opposite one, one without a component towards any point, and one as far from all
+  // points and earlier directions as there is. The last one replaces those for which the points leave no room, and all if `is_any`.
+  std::vector<double> next(bool is_any) {
+    const long turn = is_any ? 3 : turn_++ % 4;
+    std::vector<double> direction;
+    if (turn == 1) {
+      direction = used_.back();
+      for (double& x : direction) x = -x;
+    } else {
+      std::vector<double> far = farthest(), turned = turn == 3 ? std::vector<double>() : turned_away(far, turn == 2);
+      direction = std::move(turned.empty() ? far : turned);
+    }
+    return used_.emplace_back(std::move(direction));
+  }
+
+private:
+  std::vector<double> farthest() {
+    std::vector<double> best;
+    double least = 2.0;
+    for (long k = 0; k < k_pool; ++k) {
+      std::vector<double> a = random_direction(random_, next_++, dimension_);
+      double largest = -1.0;
+      for (const DesignPoint& p : found_.points)
+        if (p.is_found) largest = std::max(largest, cosine_between(a, p.u));
+      for (const std::vector<double>& other : used_) largest = std::max(largest, cosine_between(a, other));
+      if (largest >= least) continue;
+      least = largest;
+      best = std::move(a);
+    }
+    return best;
+  }
+
+  // Removes the components along the points, or only those towards them. Returns nothing if little is left.
+  [[nodiscard]] std::vector<double> turned_away(std::vector<double> a, bool is_one_sided) const {
+    constexpr int k_sweeps = 20;
+    constexpr double k_little = 0.1;
+    for (int sweep = 0; sweep < k_sweeps; ++sweep)
+      for (const DesignPoint& p : found_.points) {
+        const double cosine = p.is_found ? cosine_between(a, p.u) : 0.0, own = length_of(a.data(), dimension_);
+        if (is_one_sided && cosine <= 0.0) continue;
+        for (std::size_t i = 0; i < dimension_; ++i) a[i] -= cosine * own * p.u[i] / std::max(std::abs(p.beta), 1e-300);
+      }
+    const double left = length_of(a.data(), dimension_);
+    if (left < k_little) return {};
+    for (double& x : a) x /= left;
+    return a;
+  }
+
+  static constexpr long k_pool = 200; // candidates per direction
+  CounterRandom random_;
+  std::size_t dimension_;
+  const DesignPoints& found_;
+  std::uint64_t next_;
+  std::vector<std::vector<double>> used_;
+  long turn_ = 0;
+};
+
 } // namespace
 
 DesignPoints find_design_points(LimitFunction& limit, bool is_second_order) {
@@ -276,13 +363,14 @@ DesignPoints find_design_points(LimitFunction& limit, bool is_second_order) {
   const long before = limit.asked(), last = before + budget_of(limit);
   const LimitValue value = limit.at_point(origin);
   found.is_origin_failing = !value.is_missing && value.g < 0.0;
-  (void)search_from(limit, origin, last, found);
+  (void)search_from(limit, origin, last, found, false);
   for (const std::vector<double>& start : starts_of(limit, settings.starts - 1, found)) {
     if (limit.asked() >= last) {
       ++found.left_starts;
       continue;
     }
-    (void)search_from(limit, start, last, found);
+    const auto known = std::count_if(found.points.begin(), found.points.end(), [](const DesignPoint& p) { return p.is_found; });
+    (void)search_from(limit, start, last, found, known < 2); // starts are not chosen to be away from what later ones found
   }
   sort_points(found.points);
   if (is_second_order && !found.points.empty() && found.points.front().is_found)
@@ -292,9 +380,30 @@ DesignPoints find_design_points(LimitFunction& limit, bool is_second_order) {
   return found;
 }
 
+bool search_on(LimitFunction& limit, DesignPoints& found) {
+  constexpr std::size_t k_most_points = 64; // more of them are on a surface at one distance, which the wide part of the density covers
+  const long before = limit.asked(), n = static_cast<long>(limit.dimension());
+  const bool is_limited = limit.settings().search_samples.has_value();
+  long last = before + (is_limited ? std::max(0L, budget_of(limit) - found.samples) : budget_of(limit) / 2);
+  AwayDirections directions(limit, found);
+  const long needed_before = found.needed;
+  bool is_level = false; // at right angles to all points, the limit state does not vary
+  while (!found.is_searched_out() && limit.asked() < last && (is_limited || found.points.size() < k_most_points)) {
+    std::vector<double> start = directions.next(is_level);
+    for (double& x : start) x *= k_far;
+    const long needed = found.needed, fruitless = found.fruitless;
+    (void)search_from(limit, start, last, found, true);
+    is_level = is_level || (found.needed == needed && found.fruitless == fruitless);
+    if (found.needed > needed && !is_limited) last += 8 * (n + 5); // what a search takes that arrives: about four gradients
+  }
+  sort_points(found.points);
+  found.samples += limit.asked() - before;
+  return found.needed > needed_before;
+}
+
 bool search_again(LimitFunction& limit, const std::vector<double>& start, DesignPoints& found) {
   const long before = limit.asked();
-  const bool is_new = search_from(limit, start, before + budget_of(limit) / 2, found);
+  const bool is_new = search_from(limit, start, before + budget_of(limit) / 2, found, false);
   sort_points(found.points);
   found.samples += limit.asked() - before;
   return is_new;

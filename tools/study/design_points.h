@@ -23,13 +23,23 @@ struct DesignPoints {
   std::vector<DesignPoint> points; ///< converged points, nearest first
   long starts = 0, failed_starts = 0;
   long left_starts = 0; ///< starts that were not used because the sample budget was exhausted
+  long needed = 0;      ///< points that sampling needs, as the others do not cover them
+  long fruitless = 0;   ///< searches from places away from all points, since the last one that found such a point
   bool is_origin_failing = false;
   std::string trouble; ///< why the first starting point of the search failed; empty: none did
   long samples = 0;
+
+  /// Returns true if further searches are not expected to find points that sampling needs. The more points there are, the more searches end
+  /// at known ones while others are unknown.
+  [[nodiscard]] bool is_searched_out() const { return fruitless >= 3 + needed / 4; }
 };
 
 /// Searches design points. `is_second_order` adds the probabilities of second order.
 [[nodiscard]] DesignPoints find_design_points(LimitFunction& limit, bool is_second_order);
+
+/// Starts further searches, from places away from all points in `found`, until it is searched out or the samples for searches are used up.
+/// Returns true if they found a point around which sampling is needed.
+bool search_on(LimitFunction& limit, DesignPoints& found);
 
 /// Starts one more search from `start`. Returns true if it converged to a point that is not in `found`, and adds it.
 bool search_again(LimitFunction& limit, const std::vector<double>& start, DesignPoints& found);

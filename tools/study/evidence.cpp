@@ -119,7 +119,7 @@ private:
     std::vector<double> u;
     if (is_plain(sample) || !proposal_)
       for (std::size_t d = 0; d < n; ++d) u.push_back(random_.normal(sample, static_cast<std::uint32_t>(d + 2)));
-    else proposal_->draw(random_, sample, u);
+    else (void)proposal_->draw(random_, sample, u);
     weights_.push_back(proposal_ ? 1.0 / (1.0 + 1.0 / proposal_->weight(u.data())) : 1.0);
     append_values(u);
     std::size_t index = n + 2;

@@ -10,6 +10,7 @@ namespace {
 // Sums over the weights of failing and of surviving samples. Runs without a result are counted in `…_or_bad` only.
 struct Sums {
   WeightedMean fails, fails_or_bad, holds, holds_or_bad;
+  WeightedMean met_widely; ///< failures, or survivals where the origin fails, that the wide component drew
   void add(const LimitValue& value, double w) {
     const bool is_failure = !value.is_bad && value.g < 0.0, is_hold = !value.is_bad && !is_failure;
     fails.add(is_failure ? w : 0.0);
@@ -29,7 +30,7 @@ public:
 
   Estimate estimate() {
     do run_stages();
-    while (!course_.is_over() && finds_from_stray());
+    while (!course_.is_over() && (finds_from_stray() || finds_elsewhere()));
     course_.say_why_it_ended(e_);
     judge();
     return e_;
@@ -43,7 +44,7 @@ private:
     do {
       begin();
       draw_until(first);
-    } while (!course_.is_over() && (finds_from_stray() || finds_from_heaviest()));
+    } while (!course_.is_over() && (finds_from_stray() || finds_from_heaviest() || finds_elsewhere()));
     if (course_.is_over()) return; // no sample is left for the second stage
     is_complement_ = holds_better();
     set();
@@ -73,11 +74,14 @@ private:
       const std::size_t block = std::min({std::min(course_.block(), k_most), static_cast<std::size_t>(count - sums_.fails.count()),
                                           static_cast<std::size_t>(course_.left())});
       points_.clear();
-      for (std::size_t i = 0; i < block; ++i) proposal_.draw(random_, next_++, points_);
+      is_wide_.clear();
+      for (std::size_t i = 0; i < block; ++i) is_wide_.push_back(proposal_.draw(random_, next_++, points_));
       const std::vector<LimitValue>& values = limit_.at(points_);
       for (std::size_t i = 0; i < block; ++i) {
         const double w = proposal_.weight(&points_[i * n]);
         sums_.add(values[i], w);
+        if (is_wide_[i] && !values[i].is_bad && (values[i].g < 0.0) != design_.is_origin_failing)
+          sums_.met_widely.add(proposal_.wide_weight(&points_[i * n]));
         e_.influence.add(&points_[i * n], w, values[i]);
         e_.bad += values[i].is_bad;
         if (!values[i].is_bad && values[i].g < 0.0) remember(&points_[i * n], n, w);
@@ -120,6 +124,17 @@ private:
     return true;
   }
 
+  // Searches on if neither searches nor samples of the wide component show that all design points are known. Returns true if one was found.
+  bool finds_elsewhere() { return !is_covered() && search_on(limit_, design_); }
+
+  // Returns true if unknown design points are unlikely: searches from places away from the known ones found no other, or the wide component met
+  // so many failures that it would have met theirs. (None of 10 equal samples lies in a region with a quarter of the probability in 1 of 18
+  // cases.)
+  [[nodiscard]] bool is_covered() const {
+    constexpr double k_enough = 10.0;
+    return design_.is_searched_out() || sums_.met_widely.effective() >= k_enough;
+  }
+
   // Failures and survivals, with runs without a result as the study counts them.
   [[nodiscard]] const WeightedMean& failures() const { return course_.counts_bad() ? sums_.fails_or_bad : sums_.fails; }
   [[nodiscard]] const WeightedMean& survivals() const { return course_.counts_bad() ? sums_.holds : sums_.holds_or_bad; }
@@ -139,6 +154,7 @@ private:
 
   void judge() {
     constexpr double k_uneven = 0.1;
+    e_.is_covered = is_covered();
     const WeightedMean& counted = is_complement_ ? survivals() : failures();
     if (failures().hits() == 0) {
       e_.status = "no failure was met around the design points";
@@ -162,6 +178,7 @@ private:
   Sums sums_;
   std::uint64_t next_ = 0;
   std::vector<double> points_, stray_, heaviest_place_;
+  std::vector<bool> is_wide_; ///< of the samples in points_
   std::vector<std::vector<double>> outposts_;
   double heaviest_ = 0.0;
   double nearest_stray_ = std::numeric_limits<double>::infinity();

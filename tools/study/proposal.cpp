@@ -39,7 +39,7 @@ Proposal::Proposal(const std::vector<DesignPoint>& points, const std::vector<std
   wide_ = std::max(1.0, 1.2 * nearest / std::sqrt(static_cast<double>(dimension)));
 }
 
-void Proposal::draw(const CounterRandom& random, std::uint64_t sample, std::vector<double>& points) const {
+bool Proposal::draw(const CounterRandom& random, std::uint64_t sample, std::vector<double>& points) const {
   const double share = random.uniform(sample, 0);
   const bool is_wide = share < k_wide;
   const std::size_t k = is_wide
@@ -50,6 +50,7 @@ void Proposal::draw(const CounterRandom& random, std::uint64_t sample, std::vect
     const double z = random.normal(sample, static_cast<std::uint32_t>(d + 2));
     points.push_back(is_wide ? wide_ * z : centres_[k][d] + z);
   }
+  return is_wide;
 }
 
 bool Proposal::is_stray(const double* u) const { return wide_part(u) * weight(u) > 0.9; }
@@ -63,6 +64,8 @@ double Proposal::weight(const double* u) const {
   }
   return 1.0 / sum;
 }
+
+double Proposal::wide_weight(const double* u) const { return k_wide / wide_part(u); }
 
 // Returns the density of the wide normal component at u, with its weight k_wide, divided by the standard normal density.
 double Proposal::wide_part(const double* u) const {

@@ -86,6 +86,7 @@ public:
     for (const Estimate& e : estimates_) add_findings(e, limit_, run_.study().failed, answer_);
     report_influence();
     compare_estimates();
+    check_cover();
     if (limit_.bad() > 0)
       answer_.notes.push_back(std::to_string(limit_.bad()) + " runs did not reach their end or are not to be trusted: they count as \"" +
                               run_.study().failed + "\"");
@@ -95,6 +96,8 @@ public:
 private:
   Answer answer_with_evidence() {
     points_ = find_design_points(limit_, false);
+    (void)search_on(limit_, points_);
+    if (!points_.is_searched_out()) note_unsearched();
     sample_with_evidence(limit_, points_, target_, answer_);
     return std::move(answer_);
   }
@@ -234,12 +237,28 @@ private:
     constexpr double k_more = 10.0; // ratio of the first-order probabilities
     const double nearest = limit_.nearest_failure();
     const bool is_far_nearer = nearest < first.beta && normal_cdf(-nearest) > k_more * normal_cdf(-first.beta);
-    const auto is_crude = [](const Estimate& e) { return e.method == "monte_carlo" && e.is_trusted; };
-    if (!first.is_found || !is_far_nearer || std::any_of(estimates_.begin(), estimates_.end(), is_crude)) return;
+    if (!first.is_found || !is_far_nearer || has_trusted_crude()) return;
     answer_.notes.push_back(text_of("A sample failed at a distance of %.4g, and the nearest design point lies at %.4g: a region of failure "
                                     "may be missing. Add \"monte_carlo\" to the methods",
                                     nearest, first.beta));
     answer_.degrade(Standing::not_trusted);
+  }
+
+  // Searches that still find design points leave others unknown. Crude Monte Carlo meets every region by its probability.
+  void check_cover() {
+    const auto is_uncovered = [](const Estimate& e) { return e.is_trusted && !e.is_covered; };
+    if (std::any_of(estimates_.begin(), estimates_.end(), is_uncovered) && !has_trusted_crude()) note_unsearched();
+  }
+
+  void note_unsearched() {
+    answer_.notes.push_back("Searches still found design points when they ended, at " + std::to_string(points_.points.size()) +
+                            ": a region of failure may be missing. Give more 'search_samples', or add \"monte_carlo\" to the methods");
+    answer_.degrade(Standing::not_trusted);
+  }
+
+  [[nodiscard]] bool has_trusted_crude() const {
+    return std::any_of(estimates_.begin(), estimates_.end(),
+                       [](const Estimate& e) { return e.method == "monte_carlo" && e.is_trusted && std::isfinite(e.cov); });
   }
 
   void report_sorm(const DesignPoint& first) {

@@ -19,6 +19,7 @@ struct Estimate {
   std::string status;
   bool is_target_met = false;
   bool is_trusted = true;
+  bool is_covered = true;    ///< false if samples and searches do not show that all regions of failure were met
   Influence influence;       ///< of the variables; only by methods whose samples have weights
   std::vector<Finding> more; ///< findings of this method alone
 
@@ -47,7 +48,7 @@ struct SamplingTarget {
 /// second and is then discarded; otherwise the estimate would influence the end of sampling and be biased.
 ///
 /// The sampling density has a wide component. If one of its samples fails far from all design points, a new search starts there, and
-/// sampling restarts with the point found. If survival is less probable than failure around the design points, the probability of survival
+/// sampling restarts with the point found. If it meets few failures, searches go on from places away from all design points. If survival is less probable than failure around the design points, the probability of survival
 /// is estimated instead.
 [[nodiscard]] Estimate importance_sampling(LimitFunction& limit, DesignPoints& design, const SamplingTarget& target);
 /// Subset simulation: nested levels, each with a given fraction of the previous one's probability. Repeats the whole simulation

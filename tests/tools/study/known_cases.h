@@ -31,6 +31,9 @@ inline std::string text_of_case(const KnownCase& c, const std::vector<std::strin
 inline std::vector<KnownCase> known_cases() {
   const std::string standard = normal(0, 1);
   const std::vector<std::string> ten(10, standard), twenty(20, "distribution = \"exponential\"\nmean = 1\n");
+  std::string series = "min(4.5 - x1"; // independent: 1 − Φ(4.5)^20
+  for (int i = 2; i <= 20; ++i) series += ", 4.5 - x" + std::to_string(i);
+  static const std::string twenty_in_series = series + ")";
   return {
       {"resistance and load",
        {normal(4, 1), normal(2, 1)},
@@ -74,6 +77,7 @@ inline std::vector<KnownCase> known_cases() {
        3.478946321e-3, // by Simpson's rule over x1, cut where both branches meet
        0.0,
        {"importance_sampling", "subset"}},
+      {"twenty in series", std::vector<std::string>(20, standard), twenty_in_series.c_str(), 6.795127e-5, 0.0, {"importance_sampling"}},
   };
 }
 
