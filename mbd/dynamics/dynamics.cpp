@@ -1,5 +1,7 @@
 #include "mbd/dynamics/dynamics.h"
 
+#include "mbd/system/slip_scratch.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -92,6 +94,11 @@ void Dynamics::record_rank(State& state) const {
     if (layout_->is_left_out(static_cast<int>(r))) left_out |= bit;
     else left_out &= static_cast<std::uint8_t>(~bit);
   }
+}
+
+void Dynamics::set_slip_tolerance(double tolerance) {
+  for (std::size_t f = 0; f < system_.frictions.size(); ++f)
+    if (auto* slip = dynamic_cast<SlipScratch*>(evaluation_.scratch[f])) slip->follow(tolerance);
 }
 
 void Dynamics::set_left_limit_time(double limit) { time_cap_ = std::nextafter(limit, -std::numeric_limits<double>::infinity()); }

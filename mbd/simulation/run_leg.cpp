@@ -10,7 +10,6 @@
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
 #include "mbd/system/own_states.h"
-#include "mbd/system/slip_scratch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -80,7 +79,7 @@ void RunLeg::project_and_set_up(const PowerLedger* before, const std::vector<Imp
   formula_search_ = std::make_unique<FormulaPeakSearch>(system_, actions_ ? group_ : nullptr);
   if (formula_search_->is_empty()) formula_search_.reset();
   integrator_->expect_dense_evaluations(extremes_ || ledger_ || options_.output_step > 0.0);
-  if (integrator_->is_adaptive()) set_slip_tolerances(dynamics_.evaluation(), options_.settings.tolerance, system_.frictions.size());
+  if (integrator_->is_adaptive()) dynamics_.set_slip_tolerance(options_.settings.tolerance);
   restart();
   energy_.start(dynamics_, state_.t, y_.data(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
 }

@@ -6,8 +6,6 @@
 
 #include "mbd/system/roles.h"
 
-#include <cstddef>
-
 namespace steplap {
 
 /// Base class for the caches of friction elements whose slip law depends on the tolerance.
@@ -15,11 +13,5 @@ struct SlipScratch : FrictionScratch {
   /// Sets the relative tolerance of the run. Not called for methods without a tolerance.
   virtual void follow(double tolerance) = 0;
 };
-
-/// Passes the tolerance to the slip laws of all friction elements of an evaluation.
-inline void set_slip_tolerances(const Evaluation& e, double tolerance, std::size_t frictions) {
-  for (std::size_t f = 0; f < frictions; ++f)
-    if (auto* scratch = dynamic_cast<SlipScratch*>(e.scratch[f])) scratch->follow(tolerance);
-}
 
 } // namespace steplap

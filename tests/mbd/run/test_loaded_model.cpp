@@ -349,9 +349,8 @@ TEST_CASE("a criterion that is met is open if the estimate of its error would ta
   const std::string pendulum = std::string(k_pendulum).replace(std::string(k_pendulum).find("stay"), 4, "distance");
   const std::string criterion = "[[acceptance]]\nname = 'near'\nchannel = 'bob.x'\nwithin = 2.0\nconsequence = 'reject'\n";
   const auto loaded = load_model_text(pendulum + "b = 'ground'\n" + criterion, "pendulum.toml", {"simulation.integrator=moreau"});
-  const Run run = run_model(loaded, {});
   const auto reported = [&](double parts, const RunOptions& options) {
-    Run as_dear = run;
+    Run as_dear = run_model(loaded, {});
     RunStatistics& statistics = as_dear.result.statistics;
     statistics.evaluations = 1;
     statistics.evaluations = static_cast<long>(parts / evaluation_cost(*loaded->system, statistics));
