@@ -211,7 +211,8 @@ bool search_from(LimitFunction& limit, const std::vector<double>& start, long la
     if (p.is_found || p.off_surface < k_near_surface) known.push_back(p.u);
   const SearchEnd end = search_design_point(limit, start, known, last);
   if (!end.trouble.empty() && found.failed_starts++ == 0) found.trouble = end.trouble;
-  found.fruitless += is_away && (end.is_known || end.u != start); // a search that could not leave its start has seen nothing
+  // A search that could not leave its start has seen nothing, unless none can, as of limit states with few values.
+  found.fruitless += is_away && (end.is_known || end.u != start || found.needed == 0);
   if (end.is_known || end.is_bad) return false;
   DesignPoint point = point_of(limit, end, found.is_origin_failing);
   if (is_needed(point, found.points)) {

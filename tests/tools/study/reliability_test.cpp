@@ -406,7 +406,7 @@ TEST_CASE("importance sampling knows all of many limit states, or says that it m
   // Too few samples for the searches: what is not known is said, and crude Monte Carlo knows it.
   const auto limited = [&](const std::string& methods) {
     StudyBench bench;
-    return bench.run(standard_study(15, series(15, 2.5), "methods = [" + methods + "]\nsearch_samples = 400\ncov = 0.1\n"),
+    return bench.run(standard_study(15, series(15, 3.5), "methods = [" + methods + "]\nsearch_samples = 400\ncov = 0.1\n"),
                      {"--threads", "1"});
   };
   const Outcome open = limited("\"importance_sampling\""), crude = limited("\"importance_sampling\", \"monte_carlo\"");

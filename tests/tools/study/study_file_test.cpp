@@ -133,7 +133,7 @@ TEST_CASE("a study takes a signal's value in the units that an override takes it
       {"kind = \"prescribed_motion\"\na = \"box\"\ncoordinate = \"x\"\nas = \"acceleration\"\nsignal = \"use\"", "m/s^2"},
       {"kind = \"prescribed_motion\"\na = \"box\"\ncoordinate = \"x\"\nas = \"velocity\"\nsignal = \"use\"", "m/s"},
       {"kind = \"prescribed_motion\"\na = \"box\"\ncoordinate = \"angle\"\nas = \"velocity\"\nsignal = \"use\"", "rad/s"},
-      {"kind = \"prescribed_motion\"\na = \"box\"\ncoordinate = \"x\"\nas = \"position\"\nsignal = \"use\"", "m"},
+      {"kind = \"motor\"\na = \"box\"\ncoordinate = \"x\"\ntarget = \"use\"\nproportional = 1", "m"},
       {"kind = \"load\"\nat = \"box\"\nforce_x = \"use\"", "N"},
       {"kind = \"load\"\nat = \"box\"\ntorque = \"use\"", "N m"},
       {"kind = \"motor\"\na = \"box\"\ncoordinate = \"angle\"\ntarget = \"use\"\nproportional = 1", "rad"},
