@@ -66,6 +66,11 @@ bool Dynamics::slip_scales(double* scale) {
   return is_any;
 }
 
+bool Dynamics::depends_on_slip_direction() const {
+  return std::any_of(layout_->sliding.begin(), layout_->sliding.end(),
+                     [this](int f) { return system_.frictions[f].friction->depends_on_slip_direction(state_->friction[f]); });
+}
+
 double Dynamics::slip_decay_rate() {
   double fastest = 0.0;
   for (std::size_t i = 0; i < layout_->sliding.size(); ++i) {

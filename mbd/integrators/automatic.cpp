@@ -147,7 +147,7 @@ private:
   void choose(Dynamics& dynamics) {
     const bool is_explicit = active_ == explicit_.get();
     // No trial while friction depends on slip velocity: the stiffness of a slip law ends before the trial would pay.
-    const bool is_trial = is_explicit && count_ < k_steps_limited && is_trial_due() && !(dynamics.slip_decay_rate() > 0.0);
+    const bool is_trial = is_explicit && count_ < k_steps_limited && is_trial_due() && !dynamics.depends_on_slip_direction();
     if (count_ < (is_explicit ? k_steps_limited : k_steps_implicit) && !is_trial) return;
     count_ = 0;
     is_started_ = false;

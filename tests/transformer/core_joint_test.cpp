@@ -284,7 +284,7 @@ TEST_CASE("tables that name one limb make one joint and one stack, or are refuse
   std::string middle = with("middle_limbs = [\"front limb\"]\n");
   const std::string both_outer = "limbs = [\"front limb\", \"back limb\"]";
   middle.replace(middle.find(both_outer), both_outer.size(), "limbs = [\"back limb\"]");
-  CHECK(has(refusal(middle), "is a middle limb here and an outer limb there"));
+  CHECK(has(refusal(middle), "counts as a middle limb here and as an outer one there"));
 }
 
 // In a saw tooth the last layer of a packet ends farthest from the yoke and the first of the next nearest to it: there the yoke's sheets of

@@ -214,7 +214,8 @@ void CoreBuilder::check_other_tables(std::size_t i) {
             "transverse_acceleration");
     if (!is_before) continue;
     if (other.core->is_middle(other.limb) != core_.is_middle(i))
-      error(limb + "is " + (core_.is_middle(i) ? "a middle limb here and an outer" : "an outer limb here and a middle") + " limb there",
+      error(limb + (core_.is_middle(i) ? "counts as a middle limb here and as an outer one there"
+                                       : "counts as an outer limb here and as a middle one there"),
             list_of(i));
     if (other.core->joints.empty() || other.core->joints.size() == other.core->all_limbs().size())
       if (const std::string joint = other.core->joint_name(other.limb); joint != core_.joint_name(i))
