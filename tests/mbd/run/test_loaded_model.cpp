@@ -348,8 +348,8 @@ TEST_CASE("a large scene has the extremes that are asked for, and those of every
 TEST_CASE("a criterion that is met is open if the estimate of its error would take long, and an estimate that decides may cost more") {
   const std::string pendulum = std::string(k_pendulum).replace(std::string(k_pendulum).find("stay"), 4, "distance");
   const std::string criterion = "[[acceptance]]\nname = 'near'\nchannel = 'bob.x'\nwithin = 2.0\nconsequence = 'reject'\n";
-  const auto loaded =
-      load_model_text(pendulum + "b = 'ground'\n" + criterion, "pendulum.toml", {"simulation.integrator=moreau", "simulation.step=1 ms"});
+  const auto loaded = load_model_text(pendulum + "b = 'ground'\n" + criterion, "pendulum.toml",
+                                      {"simulation.integrator=moreau", "simulation.step=0.01 ms"});
   const auto reported = [&](double parts, const RunOptions& options) {
     Run as_dear = run_model(loaded, {});
     RunStatistics& statistics = as_dear.result.statistics;
