@@ -2,7 +2,6 @@
 #pragma once
 
 #include "elements/step_lap/step_lap_friction.h"
-#include "mbd/system/slip_scratch.h"
 
 #include <algorithm>
 #include <optional>
@@ -53,7 +52,7 @@ struct StepLapFriction::FlowQuestion {
   [[nodiscard]] bool operator==(const FlowQuestion&) const = default;
 };
 
-struct StepLapFriction::Scratch final : SlipScratch {
+struct StepLapFriction::Scratch final : FrictionScratch {
   OverlapWorkspace workspace;
   Region region;
   Fit fits[2];

@@ -1,7 +1,5 @@
 #include "mbd/dynamics/dynamics.h"
 
-#include "mbd/system/slip_scratch.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -34,14 +32,14 @@ Dynamics::Dynamics(const System& system)
   evaluation_.scratch = scratch_.pointers();
 }
 
-void Dynamics::refuse(Stage stage) const {
+void Dynamics::refuse(ResultLevel level) const {
   constexpr const char* k_names[] = {"layout", "motion", "rates", "reactions"};
-  throw std::logic_error(std::string("dynamics: results of stage '") + k_names[static_cast<int>(stage)] + "' are read, but only stage '" +
-                         k_names[static_cast<int>(stage_)] + "' is reached");
+  throw std::logic_error(std::string("dynamics: ") + k_names[static_cast<int>(level)] + " are read, but results reach only to " +
+                         k_names[static_cast<int>(level_)]);
 }
 
 void Dynamics::set_state(const State& state) {
-  stage_ = Stage::layout;
+  level_ = ResultLevel::layout;
   state_ = &state;
   evaluation_.mode = state.mode.data();
   evaluation_.friction = state.friction.data();
@@ -94,11 +92,6 @@ void Dynamics::record_rank(State& state) const {
     if (layout_->is_left_out(static_cast<int>(r))) left_out |= bit;
     else left_out &= static_cast<std::uint8_t>(~bit);
   }
-}
-
-void Dynamics::set_slip_tolerance(double tolerance) {
-  for (std::size_t f = 0; f < system_.frictions.size(); ++f)
-    if (auto* slip = dynamic_cast<SlipScratch*>(evaluation_.scratch[f])) slip->follow(tolerance);
 }
 
 void Dynamics::set_left_limit_time(double limit) { time_cap_ = std::nextafter(limit, -std::numeric_limits<double>::infinity()); }
@@ -173,7 +166,7 @@ void Dynamics::evaluate(Request request, double t, const double* y, double* dy) 
   case Request::stage_and_joints: evaluate_stage_and_joints(t, y, dy, true); break;
   case Request::end: return evaluate_end(t, y, dy);
   }
-  stage_ = Stage::layout; // whether there are by-products depends on machine code
+  level_ = ResultLevel::layout; // whether there are by-products depends on machine code
 }
 
 void Dynamics::rates(double t, const double* y, double* dy) {
@@ -224,7 +217,7 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   t = std::min(t, time_cap_);
   begin_rates(t, y, dy);
   kinematics_.place(t, y, y + n);
-  stage_ = Stage::motion;
+  level_ = ResultLevel::motion;
   rows_.prepare();
   apply_forces();
 
@@ -234,7 +227,7 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   put_place_rates(y, dy);
   rows_.solve(t, arrays_.force.data(), a);
   finish_rates(y, dy);
-  stage_ = Stage::rates;
+  level_ = ResultLevel::rates;
 }
 
 // Writes the targets of driven rows to `into`. Not inlined, since few models have driven rows.
@@ -308,7 +301,7 @@ void Dynamics::evaluate_end(double t, const double* y, double* dy) {
   }
   const StageProgram& program = *stage_programs_.now();
   defer_byproducts(program, t, y);
-  stage_ = Stage::rates;
+  level_ = ResultLevel::rates;
   if (!layout_->has_rigid_joint_events) return;
   was_merged_near_ = is_merged_near_;
   is_merged_near_ = evaluate_joint_events_by_code(program, t);
@@ -356,7 +349,7 @@ double Dynamics::mechanical_energy(double t, const double* y) {
   t = std::min(t, time_cap_);
   if (!kinematics_.is_placed(t, y)) {
     kinematics_.place(t, y, y + coordinate_count());
-    stage_ = Stage::motion;
+    level_ = ResultLevel::motion;
   }
   double kinetic = 0.0, potential = 0.0;
   for (const Cluster& c : layout_->clusters) {
@@ -385,7 +378,7 @@ bool Dynamics::has_groups() const { return !sharing()->groups().empty(); }
 
 // Computes the event functions of merged joints and of load-sharing groups. Returns true if one of them is near its limit.
 bool Dynamics::evaluate_joint_events(const double* dy) {
-  need(Stage::rates);
+  need(ResultLevel::rates);
   ensure_byproducts();
   kinematics_.complete();
   const double* const cluster_a = cluster_accelerations(dy);
@@ -412,7 +405,7 @@ bool Dynamics::evaluate_wrench_events() {
 }
 
 Snapshot Dynamics::snapshot(const double* dy) {
-  need(Stage::rates);
+  need(ResultLevel::rates);
   const Layout& layout = *layout_;
   ensure_byproducts();
   kinematics_.complete();
@@ -424,7 +417,7 @@ Snapshot Dynamics::snapshot(const double* dy) {
   if (layout.has_mechanisms()) reactions_.find_pins(cluster_a, lambda);
   reactions_.take_rows(dy + coordinate_count(), lambda);
   settle_loads();
-  stage_ = Stage::reactions;
+  level_ = ResultLevel::reactions;
   Snapshot s;
   s.t = evaluation_.t;
   s.motion = motion_;

@@ -34,7 +34,7 @@ AlongRow along_row(const SchurRow& row, double bias, const double* a) {
 } // namespace
 
 void Dynamics::relative_motion(int f, const double* dy, double* rate, double* acceleration, double* rounding) {
-  need(Stage::rates);
+  need(ResultLevel::rates);
   ensure_byproducts();
   const FrictionElement& friction = *system_.frictions[f].friction;
   const RowSpec* specs = friction.rows(state_->friction[f]);
@@ -103,7 +103,7 @@ struct Dynamics::CandidateRow {
 };
 
 void Dynamics::compute_mode_problem(ModeProblem& candidates, const double* dy) {
-  need(Stage::rates);
+  need(ResultLevel::rates);
   ensure_byproducts();
   Layout& layout = *layout_;
   const std::size_t n = candidates.rows.size();

@@ -60,7 +60,7 @@ Residual Dynamics::constraint_values(double t, const double* y) {
   t = std::min(t, time_cap_);
   evaluation_.t = t;
   kinematics_.place(t, y, y + coordinate_count());
-  stage_ = Stage::motion;
+  level_ = ResultLevel::motion;
   rows_.compare(t);
   return rows_.residual();
 }
@@ -127,7 +127,7 @@ void Dynamics::project_inner(double t, double* y) {
   evaluation_.t = std::min(t, time_cap_);
   if (!kinematics_.is_placed(evaluation_.t, y)) {
     kinematics_.place(evaluation_.t, y, y + coordinate_count());
-    stage_ = Stage::motion;
+    level_ = ResultLevel::motion;
   }
   take_inner(inner);
   for (const ForceGroup* group : system_.inner_groups) inner[inner_count()] += group->project_inner(evaluation_, inner);

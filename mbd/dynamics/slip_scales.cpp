@@ -38,7 +38,7 @@ bool Dynamics::slip_scales(double* scale) {
     const FrictionState& friction = state_->friction[layout_->sliding[i]];
     const FrictionElement& element = *system_.frictions[layout_->sliding[i]].friction;
     if (!element.depends_on_slip_direction(friction)) continue;
-    need(Stage::motion);
+    need(ResultLevel::motion);
     ensure_byproducts();
     double rate[3];
     sliding_rates(i, rate);
@@ -76,7 +76,7 @@ double Dynamics::slip_decay_rate() {
   for (std::size_t i = 0; i < layout_->sliding.size(); ++i) {
     const int f = layout_->sliding[i];
     if (!system_.frictions[f].friction->depends_on_slip_direction(state_->friction[f])) continue;
-    need(Stage::motion);
+    need(ResultLevel::motion);
     ensure_byproducts();
     double rate[3];
     sliding_rates(i, rate);

@@ -57,6 +57,11 @@ public:
     }
   }
   [[nodiscard]] FrictionScratch* const* pointers() const { return pointers_.data(); }
+  /// Passes the relative tolerance of the run to all caches.
+  void follow(double tolerance) {
+    for (FrictionScratch* const scratch : pointers_)
+      if (scratch) scratch->follow(tolerance);
+  }
 
 private:
   std::vector<std::unique_ptr<FrictionScratch>> owned_;

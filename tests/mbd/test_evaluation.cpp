@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 using namespace steplap;
 using namespace steplap::testing;
@@ -82,6 +83,51 @@ TEST_CASE("multipliers are those of the last evaluation, whatever is projected o
   e.dynamics.rates(0.0, e.y.data(), e.dy.data());
   e.dynamics.compute_mode_problem(candidates, e.dy.data());
   CHECK(e.dynamics.multipliers() == lambda);
+}
+
+TEST_CASE("results are refused before the level that contains them is reached") {
+  EvaluatedScene e(k_pendulum);
+  Dynamics::ModeProblem candidates;
+  candidates.rows = {e.dynamics.layout().active[0].spec};
+  const auto evaluated = [&](Request request) { e.dynamics.evaluate(request, 0.0, e.y.data(), e.dy.data()); };
+  const auto has_motion = [&] {
+    try {
+      return !e.dynamics.motion().empty() && e.dynamics.evaluation().t == 0.0;
+    } catch (const std::logic_error&) {
+      return false;
+    }
+  };
+  const auto has_rates = [&] { // of functions that need rates, all or none work
+    int refused = 0;
+    const auto count = [&refused](const auto& call) {
+      try {
+        call();
+      } catch (const std::logic_error&) {
+        ++refused;
+      }
+    };
+    count([&] { e.dynamics.compute_mode_problem(candidates, e.dy.data()); });
+    count([&] { (void)e.dynamics.snapshot(e.dy.data()); });
+    CHECK(refused % 2 == 0);
+    return refused == 0;
+  };
+  CHECK(has_motion());
+  CHECK(has_rates());
+  e.dynamics.set_state(e.state);
+  CHECK_FALSE(has_motion());
+  CHECK_FALSE(has_rates());
+  e.dynamics.project(0.0, e.y.data(), 1e-12); // the pin is a row: its residual needs the motion
+  CHECK(has_motion());
+  CHECK_FALSE(has_rates());
+  evaluated(Request::end);
+  CHECK(has_rates());
+  for (const Request stage : {Request::stage, Request::stage_near_limit, Request::stage_and_joints}) { // with machine code or without
+    evaluated(stage);
+    CHECK_FALSE(has_motion());
+    CHECK_FALSE(has_rates());
+  }
+  evaluated(Request::rates);
+  CHECK(has_rates());
 }
 
 TEST_CASE("every body is where it moves to and accelerates as its neighbours let it, also those that no force acts on") {
