@@ -9,8 +9,8 @@ namespace steplap {
 
 struct Load : Element {
   std::string at;
-  std::optional<Vec2> force;            // N
-  std::optional<double> couple;         // N m
+  std::optional<Vec2> force;            ///< constant part, N
+  std::optional<double> couple;         ///< constant part, N m
   std::string force_x, force_y, torque; ///< names of signals that are added to the constant values
   std::string frame = "ground";
 };

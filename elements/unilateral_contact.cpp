@@ -95,6 +95,7 @@ ContactDescription describe(const Element& element, const Model& model) {
   contact.b = e.b;
   contact.standing = ContactDescription::Standing::a;
   contact.is_preloaded = e.preload || e.interference;
+  contact.has_ends = e.ends.has_value();
   if (!e.ends) contact.depth_limit = thickness_behind(model, e.b, e.normal); // beyond the end of a face a penetration has no limit
   contact.points = [](const Element& foot, const ScenePose& pose) {
     const auto& of = static_cast<const UnilateralContact&>(foot);

@@ -40,8 +40,8 @@ std::string unit_of_file(const SignalEntry& entry) {
 }
 
 // Returns true for factors that the file gives: numbers other than 1, and all with a unit.
-bool is_factor(const GivenField& given) {
-  if (!given.node || (given.field->name != "factor" && given.field->name != "factors")) return false;
+bool may_change_unit(const GivenField& given) {
+  if (!given.node || !is_factor(*given.field)) return false;
   const auto is_one = [](const Node& node) {
     return (node.type == Node::Type::integer && std::get<long>(node.scalar) == 1) ||
            (node.type == Node::Type::number && std::get<double>(node.scalar) == 1.0);
@@ -64,7 +64,7 @@ std::string SignalUnits::problem_of(const Node& node, const std::string& unit) c
 std::string SignalUnits::misfit(const std::string& signal, const std::string& unit) const {
   const auto has_factors = [this](const SignalEntry& entry) {
     const std::vector<GivenField>& given = *given_.at(&entry);
-    return std::any_of(given.begin(), given.end(), is_factor);
+    return std::any_of(given.begin(), given.end(), may_change_unit);
   };
   for (const SignalEntry* entry : signals_in_unit_of(model_, signal, has_factors))
     if (const std::string problem = misfit_of(*entry, unit); !problem.empty())

@@ -10,8 +10,6 @@ namespace steplap {
 
 namespace {
 
-bool is_factor(const Field& field) { return field.name == "factor" || field.name == "factors"; }
-
 bool has_factors_but_one(const SignalEntry& entry) {
   for (const Field& field : entry.kind->fields.fields()) {
     if (!is_factor(field)) continue;
@@ -24,6 +22,8 @@ bool has_factors_but_one(const SignalEntry& entry) {
 }
 
 } // namespace
+
+bool is_factor(const Field& field) { return field.name == "factor" || field.name == "factors"; }
 
 bool is_in_unit_of_signal(const SignalKind& kind, const Field& field) { return field.unit == "*" && (!kind.combine || !is_factor(field)); }
 

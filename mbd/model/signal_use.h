@@ -8,6 +8,8 @@
 
 namespace steplap {
 
+/// Returns true if the field of a combining signal holds factors of its parts.
+[[nodiscard]] bool is_factor(const Field& field);
 /// Returns true if the values in `field` of a signal of this kind have the signal's unit.
 [[nodiscard]] bool is_in_unit_of_signal(const SignalKind& kind, const Field& field);
 /// Returns the signal and all others whose values have its unit: its parts, their parts, and so on. `has_factors` says which signals have

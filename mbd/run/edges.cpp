@@ -29,12 +29,6 @@ std::optional<Finding> beyond_edge(const LoadedModel& loaded, const EndlessFace&
                  entry.element->where};
 }
 
-// Returns true if the face of the contact ends, so that a foot beside it may be below its line without touching.
-bool has_ends(const ElementEntry& entry) {
-  const Field* const ends = entry.kind->fields.find("ends");
-  return ends && std::holds_alternative<Vec2>(ends->get(entry.element.get()));
-}
-
 // Returns true if the contact does not act at the end although its parts overlap there: an action has let go of it, and what it lay on
 // passes through. Its depth is then no penetration.
 bool is_let_go(const Model& model, const RangeIndex& ranges, const std::string& contact) {
@@ -54,7 +48,7 @@ bool is_let_go(const Model& model, const RangeIndex& ranges, const std::string& 
 std::optional<Finding> sunk(const LoadedModel& loaded, const ElementEntry& entry, const ContactDescription& contact,
                             const ChannelRange& gap, const std::vector<double>& reaches) {
   constexpr double k_deep = 0.2; // share of the distance of the farthest point from the centre of gravity, or of the radius of gyration
-  if (contact.is_preloaded || has_ends(entry)) return std::nullopt; // a soft spring may be preloaded over a long way
+  if (contact.is_preloaded || contact.has_ends) return std::nullopt; // a soft spring may be preloaded over a long way
   const Body* smaller = nullptr;
   double size = std::numeric_limits<double>::infinity();
   for (const std::string& marker : {contact.a, contact.b}) {
@@ -63,7 +57,9 @@ std::optional<Finding> sunk(const LoadedModel& loaded, const ElementEntry& entry
     const double reach = reaches[static_cast<std::size_t>(body - loaded.model.bodies.data())];
     if (!(reach > 0.0)) continue; // a lumped mass, whose size the model does not tell
     const double own = std::max(reach, std::sqrt(body->inertia / body->mass));
-    if (own < size) smaller = body, size = own;
+    if (own >= size) continue;
+    smaller = body;
+    size = own;
   }
   if (!smaller || !(-gap.low.value > k_deep * size)) return std::nullopt;
   return Finding{"contact_sinks", FindingLevel::warning,

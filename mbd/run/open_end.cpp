@@ -301,12 +301,11 @@ class Carriers {
 public:
   // `asks`: bodies named by limits count as carried, too. Finding them is slow, so this is requested only if some body is not carried
   // otherwise.
-  Carriers(const Model& model, const RunResult& result, bool asks) : model_(model), result_(result), asks_(asks) {
+  Carriers(const Model& model, const RunResult& result, bool asks) : model_(model), result_(result), ranges_(result.ranges), asks_(asks) {
     for (const Body& body : model.bodies)
       if (!body.fixed) place_[body.name] = static_cast<int>(parent_.size()), parent_.push_back(static_cast<int>(parent_.size()));
     for (const Marker& marker : model.markers) place_.try_emplace(marker.name, of(marker.body));
-    const RangeIndex ranges(result.ranges);
-    for (const ElementEntry& entry : model.elements) add(entry, ranges);
+    for (const ElementEntry& entry : model.elements) add(entry);
     if (!asks) return;
     for (const Body& body : model.bodies)
       if (is_limited(body.name)) join(of(body.name), 0);
@@ -335,27 +334,26 @@ private:
   // Joins the owner of a channel, "body" of "body.x", with the ground, so that it counts as carried.
   void join_named(const std::string& channel) {
     const std::size_t point = channel.rfind('.');
-    if (point != std::string::npos && !is_rotation(channel)) join(of(channel.substr(0, point)), 0);
+    const ChannelRange* const range = ranges_.find(channel);
+    if (point != std::string::npos && !(range && is_rotation(*range->channel))) join(of(channel.substr(0, point)), 0);
   }
 
   // A body may turn as it likes while it falls: a limit of its rotation does not ask for the fall. Nor does a forbidden event.
-  static bool is_rotation(const std::string& channel) {
-    return channel.ends_with(".theta") || channel.ends_with(".omega") || channel.ends_with(".alpha");
-  }
+  static bool is_rotation(const Channel& channel) { return channel.unit.starts_with("rad"); }
   [[nodiscard]] bool is_limited(const std::string& name) const {
     return std::any_of(model_.criteria.begin(), model_.criteria.end(), [&](const Criterion& criterion) {
       return criterion.event.empty() && std::any_of(result_.ranges.begin(), result_.ranges.end(), [&](const ChannelRange& range) {
                const std::string& channel = range.channel->name;
-               return channel.starts_with(name + ".") && !is_rotation(channel) && matches_pattern(channel, criterion.channel);
+               return channel.starts_with(name + ".") && !is_rotation(*range.channel) && matches_pattern(channel, criterion.channel);
              });
     });
   }
 
-  void add(const ElementEntry& entry, const RangeIndex& ranges) {
+  void add(const ElementEntry& entry) {
     const Element& element = *entry.element;
     if (as_action(element)) return;
     for (const std::string& name : names_in_formulas(entry)) join_named(name);
-    if (const ChannelRange* const force = force_of_contact(ranges, element.name);
+    if (const ChannelRange* const force = force_of_contact(ranges_, element.name);
         force && force->low.value == 0.0 && force->high.value == 0.0)
       return; // the contact never closed
     std::vector<int> bodies;
@@ -374,6 +372,7 @@ private:
 
   const Model& model_;
   const RunResult& result_;
+  RangeIndex ranges_;
   bool asks_;
   std::unordered_map<std::string, int> place_; ///< index in parent_, by name of body or marker
   std::vector<int> parent_{0};                 ///< union-find forest: each tree is a set of connected bodies

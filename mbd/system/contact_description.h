@@ -50,6 +50,7 @@ struct ContactDescription {
   std::string a, b; ///< markers that touch
   Standing standing = Standing::none;
   bool is_preloaded = false;      ///< a preload or an interference presses it in the given pose
+  bool has_ends = false;          ///< its face ends, and parts beside it may be below it without touching
   bool opening_ends_slip = false; ///< the contact has its own friction, which ends when it opens
   /// Largest penetration, m, for which the contact law is meaningful. At a larger one a part has passed through the other. Nothing: no
   /// limit.
