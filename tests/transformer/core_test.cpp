@@ -187,7 +187,7 @@ TEST_CASE("packets of a core share the joints") {
   const Model model = model_of(k_shape + k_counted + second);
   CHECK(compile(model)->frictions.size() == 2);
   CHECK(interfaces_of(model).size() == 8);
-  // What each weighs is not known, and so no packet is judged alone: a run leaves that open.
+  // The weight of each part of the stack is unknown, so that no packet is judged alone. The remark makes a run open.
   const std::vector<CoreRemark> remarks = implausible_cores(model);
   CHECK(std::count_if(remarks.begin(), remarks.end(), [](const CoreRemark& remark) {
           return has(remark.text, "2 [[core]] tables name it, and 'overlap' of core 'core' does not say what its part");

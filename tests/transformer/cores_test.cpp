@@ -87,7 +87,7 @@ struct RandomCore {
     for (std::size_t i = 0; i < packets.size(); ++i) out << table("core " + std::to_string(i + 1), i, i + 1);
     return out.str();
   }
-  // Of the packets from `first` to before `last`.
+  // Returns a table of the packets from `first` to before `last`.
   [[nodiscard]] std::string table(const std::string& name, std::size_t first, std::size_t last) const {
     std::ostringstream out;
     const auto yoke = [&](std::size_t i) { return yokes.empty() ? packets[i].first : yokes[i]; };

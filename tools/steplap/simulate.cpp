@@ -267,12 +267,13 @@ Command simulate_command() {
   make_model | steplap simulate - -o - | head
   steplap simulate my.toml --end "2 s" --integrator dop853 --tolerance 1e-9
   steplap simulate my.toml --set "element.front foot.stiffness=2 GN/m" --set body.tank.mass="48 t"
-Each model gets a folder of its own, DIR/<name of the model file>, with trajectory.csv, events.csv,
-summary.json and model.toml. The screen tells the verdict, what happened and what came nearest to its limit; with -v it has
-tables of all events and extremes, of several models beside each other. steplap show tells the same later, from the folder. In files and
-tables all numbers stand with their estimated error, where that takes about a second of computing, or ten if a hold depends on it; else it
-is said what it would take, or when it was given up, and a verdict of hold is open. If the computation fails, or Ctrl-C (SIGINT, SIGTERM, SIGHUP) stops it, what there is is saved
-as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends it at once.
+Each model gets a folder of its own, DIR/<name of the model file>, with trajectory.csv, events.csv, summary.json and model.toml.
+The screen tells the verdict, what happened and what came nearest to its limit; with -v it has tables of all events and
+extremes, of several models beside each other. steplap show tells the same later, from the folder. In files and tables all
+numbers stand with their estimated error, if the estimate takes about a second of computing, or ten if a hold depends on it;
+else the screen says what it would take, and what would be a hold is open. If the computation fails, or Ctrl-C (SIGINT,
+SIGTERM, SIGHUP) stops it, what there is is saved as partial_* and the exit code is 4, or that of the signal.
+A second Ctrl-C ends it at once.
 )";
   command.options = {
       {"MODEL", &o->models, "FILE", "model files (TOML); - is the standard input", true},

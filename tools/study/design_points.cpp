@@ -200,8 +200,8 @@ bool is_needed(const DesignPoint& point, const std::vector<DesignPoint>& others)
          });
 }
 
-// Runs one search until sample number `last`; records the reason if it ends early. Returns true if it found a new point. `is_away`: the start
-// is away from all points.
+// Runs one search until sample number `last`; records the reason if it ends early. Returns true if it found a new point. `is_away`: the
+// start is away from all points.
 bool search_from(LimitFunction& limit, const std::vector<double>& start, long last, DesignPoints& found, bool is_away) {
   ++found.starts;
   // searches that failed closer than this to the surface, relative, are treated as known: other starts would oscillate there, too

@@ -127,9 +127,9 @@ private:
   // Searches on if neither searches nor samples of the wide component show that all design points are known. Returns true if one was found.
   bool finds_elsewhere() { return !is_covered() && search_on(limit_, design_); }
 
-  // Returns true if unknown design points are unlikely: searches from places away from the known ones found no other, or the wide component met
-  // so many failures that it would have met theirs. (None of 10 equal samples lies in a region with a quarter of the probability in 1 of 18
-  // cases.)
+  // Returns true if unknown design points are unlikely: searches from places away from the known ones found no other, or the wide component
+  // met so many failures that it would have met theirs. (None of 10 equal samples lies in a region with a quarter of the probability in 1 of
+  // 18 cases.)
   [[nodiscard]] bool is_covered() const {
     constexpr double k_enough = 10.0;
     return design_.is_searched_out() || sums_.met_widely.effective() >= k_enough;

@@ -48,8 +48,8 @@ struct SamplingTarget {
 /// second and is then discarded; otherwise the estimate would influence the end of sampling and be biased.
 ///
 /// The sampling density has a wide component. If one of its samples fails far from all design points, a new search starts there, and
-/// sampling restarts with the point found. If it meets few failures, searches go on from places away from all design points. If survival is less probable than failure around the design points, the probability of survival
-/// is estimated instead.
+/// sampling restarts with the point found. If it meets few failures, searches go on from places away from all design points. If survival is
+/// less probable than failure around the design points, the probability of survival is estimated instead.
 [[nodiscard]] Estimate importance_sampling(LimitFunction& limit, DesignPoints& design, const SamplingTarget& target);
 /// Subset simulation: nested levels, each with a given fraction of the previous one's probability. Repeats the whole simulation
 /// `repetitions` times; their scatter gives the interval. Failures are counted directly if equal values prevent a further level.

@@ -344,7 +344,7 @@ TEST_CASE("a large scene has the extremes that are asked for, and those of every
   CHECK(range->low.value == doctest::Approx(-9.81 * 0.1).epsilon(1e-12)); // free fall, which rk4 integrates exactly
 }
 
-// The statistics are made up, because a run whose estimate is too expensive takes minutes.
+// The statistics are made up, because a run whose estimate is too expensive takes long itself.
 TEST_CASE("a criterion that is met is open if the estimate of its error would take long, and an estimate that decides may cost more") {
   const std::string pendulum = std::string(k_pendulum).replace(std::string(k_pendulum).find("stay"), 4, "distance");
   const std::string criterion = "[[acceptance]]\nname = 'near'\nchannel = 'bob.x'\nwithin = 2.0\nconsequence = 'reject'\n";

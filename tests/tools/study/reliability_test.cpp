@@ -2,6 +2,9 @@
 #include "tests/tools/study/known_cases.h"
 #include "tests/tools/study/study_bench.h"
 #include "tools/study/law.h"
+#include "tools/study/surrogate.h"
+
+#include <Eigen/LU>
 
 #include <cstdlib>
 #include <map>
@@ -218,6 +221,45 @@ KnownCase four_branches() {
 } // namespace
 
 // Intervals of 95 %: nine of ten seeds, and four of five, which the five fixed ones do.
+// With the correlations R of the known points with each other and k of a place with them, the predictor has the mean m + kᵀR⁻¹(y − m) and the
+// variance σ² (1 − kᵀR⁻¹k + (1 − 1ᵀR⁻¹k)²/(1ᵀR⁻¹1)), m = 1ᵀR⁻¹y/(1ᵀR⁻¹1); far away m and σ² (1 + 1/(1ᵀR⁻¹1)).
+TEST_CASE("a surrogate is the best linear unbiased predictor, also at many places at once") {
+  const std::vector<double> known{-2.0, -1.0, -1.0, 1.5, 0.0, 0.0, 1.0, -2.0, 2.0, 1.0, -0.5, 2.5}; // six points of two coordinates
+  std::vector<double> values;
+  for (std::size_t i = 0; i < known.size(); i += 2) values.push_back(std::sin(2.0 * known[i]) + known[i + 1] * known[i + 1]);
+  study::Surrogate surrogate(2);
+  surrogate.fit(known, values);
+  const auto n = static_cast<Eigen::Index>(values.size());
+  const auto correlations_of = [&](const double* place) {
+    Eigen::VectorXd k(n);
+    for (Eigen::Index i = 0; i < n; ++i) k[i] = surrogate.correlation(place, &known[static_cast<std::size_t>(2 * i)]);
+    return k;
+  };
+  Eigen::MatrixXd r(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) r.col(i) = correlations_of(&known[static_cast<std::size_t>(2 * i)]);
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(r);
+  const Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(values.data(), n), ones = Eigen::VectorXd::Ones(n), by_ones = lu.solve(ones);
+  const double sum = ones.dot(by_ones), m = by_ones.dot(y) / sum;
+  const study::Prediction far = surrogate.at({1e6, -1e6}).front();
+  const double sigma2 = far.deviation * far.deviation / (1.0 + 1.0 / sum);
+  REQUIRE(far.deviation > 0.0);
+  CHECK(far.mean == doctest::Approx(m).epsilon(1e-9));
+  std::vector<double> places;
+  for (int i = -300; i <= 300; ++i) places.insert(places.end(), {0.01 * i, 1.0 - 0.007 * i}); // more than are predicted together
+  const std::vector<study::Prediction> predicted = surrogate.at(places);
+  REQUIRE(predicted.size() == places.size() / 2);
+  // The noise of 1e-12 that OpenTURNS adds to the diagonal of R counts by the norm of R⁻¹.
+  const double noise = 1e-11 * lu.inverse().norm();
+  REQUIRE(noise < 1e-6);
+  for (std::size_t i = 0; i < predicted.size(); ++i) {
+    const Eigen::VectorXd k = correlations_of(&places[2 * i]), by_k = lu.solve(k);
+    CHECK(std::abs(predicted[i].mean - (m + by_k.dot(y - m * ones))) <= noise * y.norm());
+    const double variance = sigma2 * (1.0 - k.dot(by_k) + std::pow(1.0 - ones.dot(by_k), 2) / sum);
+    CHECK(std::abs(predicted[i].deviation * predicted[i].deviation - variance) <= noise * sigma2);
+    CHECK(predicted[i].mean == doctest::Approx(surrogate.at({places[2 * i], places[2 * i + 1]}).front().mean).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("kriging knows wavy and branched limit states within 150 runs") {
   const char* const wanted = std::getenv("STEPLAP_KRIGING_SEEDS"); // more than a test has time for
   const long seeds = wanted ? std::atol(wanted) : 5;
