@@ -1,6 +1,5 @@
 #include "tools/steplap/text_table.h"
 
-#include "mbd/run/measured_text.h"
 #include "mbd/run/quantity_text.h"
 #include "tools/steplap/text_layout.h"
 
@@ -12,10 +11,6 @@ namespace steplap {
 Cell quantity_cell(double value, const std::string& unit) { return {quantity_text(value, unit), value, unit}; }
 
 Cell quantity_cell(double value, const std::string& unit, double scale) { return {quantity_text(value, unit, scale), value, unit}; }
-
-Cell measured_cell(double value, std::optional<double> error, const std::string& unit) {
-  return {measured_text(value, error, unit), value, unit, error};
-}
 
 Cell count_cell(std::size_t count) { return {std::to_string(count), static_cast<double>(count)}; }
 

@@ -25,8 +25,6 @@ struct Cell {
 [[nodiscard]] Cell quantity_cell(double value, const std::string& unit);
 /// As above, but values that are rounding relative to `scale` are shown as zero.
 [[nodiscard]] Cell quantity_cell(double value, const std::string& unit, double scale);
-/// Returns a cell with measured_text() and the number.
-[[nodiscard]] Cell measured_cell(double value, std::optional<double> error, const std::string& unit);
 [[nodiscard]] Cell count_cell(std::size_t count);
 
 /// A table. Columns are as wide as their widest cell (counted in characters, not bytes).
